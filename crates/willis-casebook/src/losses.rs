@@ -138,6 +138,7 @@ fn measured_mesh(report: &mut Report) {
         "niemann",
         "niemann-winter",
         "iso-14179-1",
+        "iso-14179-1-friction",
         "fernandes",
         "matsumoto",
         "benedict-kelley",

@@ -925,7 +925,11 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
              regimes and formulas use a coefficient of {mu}"
         ));
         let law = train.laws.mesh_friction(train.lubrication.is_some());
-        all.push(format!("tooth friction by `{}`, loss factor `{}`", law.meta().id, train.laws.loss_factor.meta().id));
+        all.push(format!(
+            "tooth friction by `{}`, loss factor `{}`",
+            law.meta().id,
+            train.laws.loss_factor(&law).meta().id
+        ));
     }
     if !train.bearings.is_empty() {
         let law = train.laws.bearing.meta().id;
@@ -968,8 +972,7 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
         None => "how the oil is supplied is not given: gears in air or oil lose nothing".into(),
         Some(Jet | Mist) => {
             let law = train.laws.windage.meta().id;
-            let mist = train.lubrication.as_ref().is_some_and(|l| l.mist.is_some());
-            let fluid = if mist || law == "anderson-loewenthal" { "air and oil mist" } else { "air" };
+            let fluid = surroundings(train);
             format!("gears turn in {fluid}: windage by `{law}`, rings as discs, planets relative to their carrier")
         }
         Some(Bath) => format!("churning by `{}` of the gears whose immersion is given", train.laws.churning.meta().id),
@@ -977,9 +980,21 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
     });
     if !train.rotors.is_empty() {
         let law = train.laws.rotor_drag.meta().id;
-        all.push(format!("drag of carriers and drums by `{law}`: an estimate, good to ±50 %"));
+        let misty = train.rotors.iter().any(|r| r.fluid == crate::train::Fluid::Mist);
+        let fluid = if misty { format!(" in {}, as the gears", surroundings(train)) } else { String::new() };
+        all.push(format!("drag of carriers and drums{fluid} by `{law}`: an estimate, good to ±50 %"));
     } else if train.sets.iter().any(|s| s.planets.is_some()) {
         all.push("no drag of carriers (give a [[rotor]])".into());
+    }
+}
+
+/// What gears and rotors turn in, in words.
+fn surroundings(train: &Train) -> String {
+    let given = train.lubrication.as_ref().and_then(|l| l.mist);
+    match (given, train.laws.windage.air_per_oil()) {
+        (Some(parts), _) => format!("a mist of {parts} parts of air to one of oil"),
+        (None, Some(parts)) => format!("a mist of {parts} parts of air to one of oil, as the law was measured"),
+        (None, None) => "air, as no `mist` is given".to_owned(),
     }
 }
 

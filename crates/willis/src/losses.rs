@@ -51,6 +51,8 @@ pub enum Tag {
     Estimate,
     /// Reproduces a published number that follows from an error; never the default.
     Compatibility,
+    /// A law of tooth friction that belongs with the loss factor of its name and takes no other.
+    OwnLossFactor,
     /// A law of tooth friction that reads neither the oil nor its film; every other has no value without an oil.
     WithoutOil,
 }
@@ -63,6 +65,7 @@ impl Tag {
             Self::SlidingOnly => "sliding only, rolling is added",
             Self::Estimate => "estimate ±50 %",
             Self::Compatibility => "reproduces a published error",
+            Self::OwnLossFactor => "with its own loss factor",
             Self::WithoutOil => "needs no oil",
         }
     }
@@ -351,6 +354,13 @@ impl Laws {
             None if oil => MeshFriction::default(),
             None => MeshFriction::Constant(constant()),
         }
+    }
+
+    /// The loss factor in force beside a friction law: its own where it has one, else the one that is chosen.
+    pub fn loss_factor(&self, friction: &mesh_friction::MeshFriction) -> loss_factor::LossFactor {
+        let own = || loss_factor::LossFactor::named(friction.meta().id);
+        let has_own = friction.meta().tags.contains(&Tag::OwnLossFactor);
+        has_own.then(own).flatten().unwrap_or(self.loss_factor)
     }
 
     /// A chosen law that needs an oil, for a train that has none.

@@ -99,7 +99,9 @@ pub(super) fn doubts(
         }
         if bearing.kind != Kind::Plain {
             let mean = (bearing.bore + bearing.outside_diameter) / 2.0;
-            doubt(DoubtKind::BearingSpeed, name, b.speed_rad_s * 30.0 / std::f64::consts::PI * mean * 1e3, SPEED);
+            let times = |speed: f64| speed * 30.0 / std::f64::consts::PI * mean * 1e3;
+            let limit = bearing.limiting_speed.map_or(SPEED, times);
+            doubt(DoubtKind::BearingSpeed, name, times(b.speed_rad_s), limit);
         }
         if input_power_w > 0.0 && b.loss_w > LEAST_LOSS {
             doubt(DoubtKind::BearingLoss, name, b.loss_w / input_power_w, LOSS);
@@ -137,7 +139,7 @@ impl fmt::Display for Doubt {
             }
             DoubtKind::BearingSpeed => write!(
                 f,
-                "{at}: speed times mean diameter is {value:.3e} mm/min; bearings of normal make reach about {limit:.1e}"
+                "{at}: speed times mean diameter is {value:.3e} mm/min; bearings like it reach about {limit:.1e} with oil"
             ),
             DoubtKind::BearingLoss => {
                 write!(f, "{at}: these bearings lose {:.0} % of the power that goes in", value * 100.0)

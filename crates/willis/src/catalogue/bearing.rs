@@ -194,6 +194,8 @@ pub struct Bearing {
     pub dynamic_rating: Option<f64>,
     /// Static load rating `C0`, N, where known.
     pub static_rating: Option<f64>,
+    /// Limiting speed with oil, rad/s, where known: what cage and guidance stand.
+    pub limiting_speed: Option<f64>,
     /// Axial factor `Y` of tapered and spherical rollers, where known.
     pub axial_factor: Option<f64>,
     /// Diameter of the rolling elements, m; estimated from the envelope when not known.
@@ -418,6 +420,7 @@ impl Bearing {
             rows: kind.rows(),
             dynamic_rating: None,
             static_rating: None,
+            limiting_speed: None,
             axial_factor: None,
             element_diameter: None,
             seal: None,
@@ -620,6 +623,7 @@ fn designation(kind: Kind, series: &str, bore_mm: f64) -> String {
     };
     match kind {
         Kind::CylindricalRoller => format!("NU {series}{code}"),
+        Kind::FullComplementCylindricalRoller => format!("NCF {series}{code}"),
         Kind::NeedleRoller => format!("NA {series}{code}"),
         Kind::ToroidalRoller => format!("C {series}{code}"),
         Kind::TaperedRoller if series == "320" => format!("{series}{code} X"),
@@ -645,7 +649,9 @@ pub fn all() -> &'static [Bearing] {
                 all.push(Bearing {
                     dynamic_rating: get("C").map(|kn| kn * 1e3),
                     static_rating: get("C0").map(|kn| kn * 1e3),
+                    limiting_speed: get("n").map(|rpm| rpm * std::f64::consts::PI / 30.0),
                     axial_factor: get("Y"),
+                    element_diameter: get("Dw").map(|mm| mm / 1e3),
                     source: group.source.clone(),
                     trust: group.trust,
                     ..Bearing::new(&name, group.kind, series, mm("d"), mm("D"), mm("B"))

@@ -14,6 +14,8 @@ pub struct Path<D> {
     pub internal: bool,
     /// Helix angle at the base circle `β_b`, rad.
     pub base_helix: D,
+    /// Helix angle at the operating circles `β_w`, rad.
+    pub operating_helix: D,
     /// Addendum contact ratios `e_1`, `e_2`: parts of the path beyond the pitch point, of the
     /// addendum of each wheel.
     pub e: [D; 2],
@@ -29,6 +31,7 @@ family! {
     ohlendorf::Ohlendorf,
     uniform::Uniform,
     buckingham_merritt::BuckinghamMerritt,
+    iso_14179_1::Iso14179Part1,
 }
 
 impl<D: crate::Real> Path<D> {
@@ -81,6 +84,7 @@ impl<D: crate::Real> Path<D> {
             teeth: [pair.data.wheels[0].teeth, pair.data.wheels[1].teeth],
             internal: pair.internal(),
             base_helix: pair.base_helix,
+            operating_helix: pair.operating_helix,
             e: pair.addendum_contact_ratios,
             overlap_ratio: pair.overlap_ratio,
         }
@@ -90,6 +94,13 @@ impl<D: crate::Real> Path<D> {
 impl Path<f64> {
     /// A spur pair 17/22 of standard proportions, for examples and tests.
     pub fn typical() -> Self {
-        Self { teeth: [17.0, 22.0], internal: false, base_helix: 0.0, e: [0.7574, 0.790348], overlap_ratio: 0.0 }
+        Self {
+            teeth: [17.0, 22.0],
+            internal: false,
+            base_helix: 0.0,
+            operating_helix: 0.0,
+            e: [0.7574, 0.790348],
+            overlap_ratio: 0.0,
+        }
     }
 }

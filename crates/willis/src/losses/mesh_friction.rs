@@ -83,6 +83,7 @@ family! {
     niemann::Niemann,
     niemann_winter::NiemannWinter,
     iso_14179_1::Iso14179Part1,
+    iso_14179_1_friction::Iso14179Part1Friction,
     fernandes::Fernandes,
     matsumoto::Matsumoto,
     xu_kahraman::XuKahraman,

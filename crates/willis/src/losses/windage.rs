@@ -37,6 +37,20 @@ family! {
 /// Parts of air to one part of oil, by volume, in the mist around jet-lubricated gears (NASA TP-1622).
 pub const AIR_PER_OIL: f64 = 34.25;
 
+impl Windage {
+    /// Parts of air to one part of oil, by volume, in which the law was measured; `None` if in air alone.
+    ///
+    /// ```
+    /// use willis::losses::windage::Windage;
+    ///
+    /// assert_eq!(Windage::default().air_per_oil(), None);
+    /// assert_eq!(Windage::named("anderson-loewenthal").unwrap().air_per_oil(), Some(34.25));
+    /// ```
+    pub fn air_per_oil(&self) -> Option<f64> {
+        matches!(self, Self::AndersonLoewenthal(_)).then_some(AIR_PER_OIL)
+    }
+}
+
 /// Density or dynamic viscosity of a mist, from that of oil and of air: `(oil + r air)/(1 + r)` with r
 /// parts of air to one of oil by volume ([`AIR_PER_OIL`]).
 ///

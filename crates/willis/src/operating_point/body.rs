@@ -8,7 +8,7 @@ use crate::losses::injection::JetAtMesh;
 use crate::losses::pump::PumpDuty;
 use crate::losses::rotor_drag::Drum;
 use crate::losses::seal::Lip;
-use crate::losses::windage::{AIR_PER_OIL, Disc, Windage, mist};
+use crate::losses::windage::{Disc, mist};
 use crate::power_flow::MeshFlow;
 use crate::real::{self, Real};
 use crate::train::{FRAME, Fluid, JetSide, MemberId, MemberKind, OilSupply, OpenElement, Train};
@@ -93,15 +93,16 @@ enum Wet<R> {
 }
 
 impl<R: Real> Physics<'_, R> {
-    /// Density and viscosity of a fluid around the gears.
+    /// Density and viscosity of a fluid in the housing. Gears and rotors turn in one and the same
+    /// mist: of the ratio that is given, else of the one with which the law of windage was measured.
     fn fluid(&self, fluid: Fluid) -> (R, R) {
-        match (fluid, &self.oil) {
-            (Fluid::Oil, Some((_, oil))) => (oil.density, oil.dynamic_viscosity),
-            (Fluid::Mist, Some((_, oil))) => {
-                let parts = oil.mist.unwrap_or(R::from(AIR_PER_OIL));
-                (mist(oil.density, AIR.0, parts), mist(oil.dynamic_viscosity, AIR.1, parts))
-            }
-            _ => (R::from(AIR.0), R::from(AIR.1)),
+        let air = (R::from(AIR.0), R::from(AIR.1));
+        let Some((_, oil)) = &self.oil else { return air };
+        let parts = oil.mist.or(self.train.laws.windage.air_per_oil().map(R::from));
+        match (fluid, parts) {
+            (Fluid::Oil, _) => (oil.density, oil.dynamic_viscosity),
+            (Fluid::Mist, Some(parts)) => (mist(oil.density, AIR.0, parts), mist(oil.dynamic_viscosity, AIR.1, parts)),
+            _ => air,
         }
     }
 
@@ -109,7 +110,6 @@ impl<R: Real> Physics<'_, R> {
     fn wet(&self, body: &Body, speeds: &[R]) -> Option<Wet<R>> {
         let speed = self.slip(speeds, [body.member, body.against]);
         let (Some((_, oil)), true) = (&self.oil, speed.re() > 0.0) else { return None };
-        let laws = &self.train.laws;
         let teeth = self.numbers.teeth[body.mesh].as_ref()?;
         let (pair, gear) = (&teeth.pair, &teeth.pair.gears[body.gear]);
         let z = pair.data.wheels[body.gear].teeth;
@@ -137,11 +137,7 @@ impl<R: Real> Physics<'_, R> {
                 })
             }
             None => {
-                // The mist of 34.25 parts of air belongs to the disc formula that was fitted with it; the
-                // other laws were measured in air.
-                let fitted = matches!(laws.windage, Windage::AndersonLoewenthal(_));
-                let fluid = if fitted || oil.mist.is_some() { Fluid::Mist } else { Fluid::Air };
-                let (density, viscosity) = self.fluid(fluid);
+                let (density, viscosity) = self.fluid(Fluid::Mist);
                 let free = gear.reference_radius;
                 let gap = self.numbers.axial_gap.map_or(free, |g| real::min(g, free));
                 Wet::Disc(Disc {

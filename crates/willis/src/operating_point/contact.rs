@@ -108,6 +108,13 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
 ];
 
+/// Nodes and weights of the rule of Gauss between two places; none where the second lies before the first.
+fn gauss<R: Real>(from: R, to: R) -> impl Iterator<Item = (R, R)> {
+    let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
+    let nodes = GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]);
+    nodes.filter(move |_| half.re() > 0.0).map(move |(node, w)| (middle + half * node, half * w))
+}
+
 /// Most tooth pairs in contact whose exchange is looked at.
 const MOST_PAIRS: usize = 5;
 
@@ -303,7 +310,8 @@ impl<R: Real> Physics<'_, R> {
 
     /// The tooth loss factor of a mesh: an integral over the path of contact, worked out once.
     fn loss_factor(&self, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> R {
-        *self.loss_factors[flow.mesh.0].get_or_init(|| self.train.laws.loss_factor.eval(&Path::of(&teeth.pair)))
+        *self.loss_factors[flow.mesh.0]
+            .get_or_init(|| self.train.laws.loss_factor(&self.friction).eval(&Path::of(&teeth.pair)))
     }
 
     /// Friction and rolling loss of a mesh.
@@ -323,13 +331,9 @@ impl<R: Real> Physics<'_, R> {
             let breaks = loaded.breaks();
             for k in 0..breaks.len() - 1 {
                 let (from, to) = (real::max(breaks[k], start), real::min(breaks[k + 1], end));
-                let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
-                if half.re() <= 0.0 {
-                    continue;
-                }
-                for (node, w) in GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]) {
-                    let p = loaded.point(middle + half * node);
-                    let own = half * w * p.line_load * p.sliding;
+                for (place, w) in gauss(from, to) {
+                    let p = loaded.point(place);
+                    let own = w * p.line_load * p.sliding;
                     weight += own;
                     friction += own * self.coefficient(&pitch.at(&p));
                 }
@@ -343,16 +347,13 @@ impl<R: Real> Physics<'_, R> {
         }
 
         if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
-            // Mean over the path: away from the pitch point sliding heats the inlet and thins the film.
-            let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
-            let mean = GAUSS
-                .into_iter()
-                .flat_map(|(node, w)| [(node, w), (-node, w)])
-                .map(|(node, w)| {
-                    law.eval(&loaded.rolling_contact(oil, &loaded.point(middle + half * node))) * (0.5 * w)
-                })
-                .fold(none, |sum, x| sum + x);
-            let rolling = mean * pair.contact_ratio * f64::from(mesh.count);
+            // Mean over the path: away from the pitch point sliding heats the inlet and thins the film, on both sides
+            // alike, so the film has a kink there.
+            let pitch = real::min(real::max(none, start), end);
+            let sum = gauss(start, pitch)
+                .chain(gauss(pitch, end))
+                .fold(none, |sum, (place, w)| sum + law.eval(&loaded.rolling_contact(oil, &loaded.point(place))) * w);
+            let rolling = sum / (end - start) * pair.contact_ratio * f64::from(mesh.count);
             tooth.rolling = if rolling.re().is_finite() { real::max(rolling, none) } else { none };
         }
         tooth
@@ -482,10 +483,7 @@ impl Physics<'_> {
             // Just inside, so that a jump of the load has a value on either side.
             let (from, to) = (from + 1e-9 * (to - from), to - 1e-9 * (to - from));
             stations.extend((0..=steps).map(|i| station(from + (to - from) * i as f64 / steps as f64)));
-            let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
-            for (node, w) in GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]) {
-                work += half * w * station(middle + half * node).loss.unwrap_or(0.0);
-            }
+            work += gauss(from, to).map(|(s, w)| w * station(s).loss.unwrap_or(0.0)).sum::<f64>();
         }
         let loss = mesh.computed.then(|| work / pair.base_pitch * f64::from(mesh.count));
         Some(Along { stations, loss, local })
@@ -556,7 +554,8 @@ impl Physics<'_> {
             }
         };
         if mesh.computed && beyond.is_some() {
-            note(beyond, "loss_factor", laws.loss_factor.meta().id, laws.loss_factor.outside(&path));
+            let factor = laws.loss_factor(&self.friction);
+            note(beyond, "loss_factor", factor.meta().id, factor.outside(&path));
             let place = ToothLoad {
                 position: pair.position(0.0),
                 contact_ratio: pair.contact_ratio,

@@ -130,7 +130,7 @@ fn a_duty_cycle_repeats_itself() {
 /// the one in the middle parts what a cold start reaches from what a hot one does.
 #[test]
 fn several_temperatures_are_told() {
-    let base = example("fva-planetary-stage.toml").replace("roughness = \"0.6 um\"", "roughness = \"0.3 um\"");
+    let base = example("fva-planetary-stage.toml").replace("roughness = \"0.833 um\"", "roughness = \"0.3 um\"");
     let text = |conductance: f64| {
         format!(
             "{base}\n[laws]\nmesh_friction = \"fernandes\"\n[heat]\nambient = \"-70 degC\"\nlimit = \"200 degC\"\n\

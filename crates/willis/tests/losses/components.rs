@@ -183,8 +183,56 @@ fn bearing_catalogue() {
         let section = (b.outside_diameter - b.bore) / 2.0;
         assert!((0.3..6.0).contains(&(b.width / section)), "{}", b.designation);
         if let (Some(c), Some(c0)) = (b.dynamic_rating, b.static_rating) {
-            assert!((0.4..1.4).contains(&(c0 / c)), "{}", b.designation);
+            let likely = match b.kind {
+                Kind::NeedleRoller => 1.1..3.3,
+                Kind::AxialCylindricalRoller => 2.0..4.6,
+                _ if b.bore > 0.15 => 0.9..1.7,
+                _ => 0.4..1.4,
+            };
+            assert!(likely.contains(&(c0 / c)), "{}: {}", b.designation, c0 / c);
         }
+        if let Some(speed) = b.limiting_speed {
+            let mean = (b.bore + b.outside_diameter) / 2.0;
+            let speed_factor = speed * 30.0 / PI * mean * 1e3;
+            assert!((0.2e6..1.2e6).contains(&speed_factor), "{}: {speed_factor:e}", b.designation);
+        }
+        if let Some(element) = b.element_diameter {
+            assert!(element < 0.6 * b.width && element < section, "{}", b.designation);
+        }
+    }
+    // Every kind that has constants can be had by a designation.
+    for (name, kind) in Kind::NAMES {
+        let absent = matches!(kind, Kind::DoubleRowAngularContactBall | Kind::FourPointContactBall | Kind::Plain);
+        assert_eq!(bearing::all().iter().any(|b| b.kind == *kind), !absent, "{name}");
+    }
+    assert!(bearing::all().iter().any(|b| b.bore >= 0.38));
+}
+
+/// Rows of the catalogues of makers, read a second time.
+#[test]
+fn val_ratings_of_makers() {
+    for (name, envelope, ratings, rpm_limit) in [
+        ("6064", [320.0, 480.0, 74.0], [371e3, 540e3], 2200.0),
+        ("61876", [380.0, 480.0, 46.0], [242e3, 390e3], 2000.0),
+        ("16052", [260.0, 400.0, 44.0], [238e3, 310e3], 2000.0),
+        ("NA 4906", [30.0, 47.0, 17.0], [23e3, 34e3], 12350.0),
+        ("NA 4876", [380.0, 480.0, 100.0], [950e3, 2700e3], 1045.0),
+        ("81120", [100.0, 135.0, 25.0], [197e3, 649.8e3], 2400.0),
+        ("81272", [360.0, 500.0, 110.0], [2690.6e3, 10_595e3], 600.0),
+    ] {
+        let b = bearing::find(name).unwrap_or_else(|| panic!("{name}"));
+        assert_eq!([b.bore, b.outside_diameter, b.width].map(|x| (x * 1e6).round() / 1e3), envelope, "{name}");
+        assert_eq!([b.dynamic_rating, b.static_rating].map(|x| x.map(f64::round)), ratings.map(Some), "{name}");
+        close(name, b.limiting_speed.unwrap(), rpm(rpm_limit), 1e-12);
+    }
+    for (name, envelope) in [
+        ("NU 1076", [380.0, 560.0, 82.0]),
+        ("NCF 1840", [200.0, 250.0, 24.0]),
+        ("C 2210", [50.0, 90.0, 23.0]),
+        ("51120", [100.0, 135.0, 25.0]),
+    ] {
+        let b = bearing::find(name).unwrap_or_else(|| panic!("{name}"));
+        assert_eq!([b.bore, b.outside_diameter, b.width].map(|x| (x * 1e6).round() / 1e3), envelope, "{name}");
     }
 }
 

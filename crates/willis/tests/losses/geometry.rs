@@ -583,6 +583,7 @@ fn regress_loss_factors_have_derivatives() {
                 teeth: base.teeth,
                 internal: base.internal,
                 base_helix: Dual64::from(base.base_helix),
+                operating_helix: Dual64::from(base.operating_helix),
                 e: [seed(0.76, 0), seed(1.1, 1)],
                 overlap_ratio: seed(0.54, 2),
             };

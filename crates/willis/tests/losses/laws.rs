@@ -275,6 +275,7 @@ fn every_loss_factor_is_documented_finite_and_has_its_derivative() {
             teeth: path.teeth,
             internal: path.internal,
             base_helix: Dual64::from(path.base_helix),
+            operating_helix: Dual64::from(path.operating_helix),
             e: [Dual64::new(path.e[0], 1.0), Dual64::from(path.e[1])],
             overlap_ratio: Dual64::from(path.overlap_ratio),
         };
@@ -660,6 +661,7 @@ fn regress_recalled_laws() {
     let expected = [
         ("niemann-winter", "0.058851"),
         ("iso-14179-1", "0.013848"),
+        ("iso-14179-1-friction", "0.013848"),
         ("benedict-kelley", "0.110211"),
         ("anderson-loewenthal", "0.049465"),
         ("coulomb-by-regime", "0.100000"),

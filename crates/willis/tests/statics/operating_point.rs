@@ -286,6 +286,99 @@ fn a_second_calculation_agrees() {
     close(torque(&s, "carrier"), true_place.carrier_torque, 3e-6);
 }
 
+/// The film of oil that rolls through the contact is thinned by sliding on both sides of the pitch point. The loss is
+/// here a sum over a hundred thousand places of the path, from the formulas of the laws.
+#[test]
+fn rolling_is_the_mean_over_both_sides_of_the_pitch_point() {
+    let s = only(&stage(3, 50.0, "mesh_friction = \"benedict-kelley\"", RATED));
+    let (alpha, m, b) = (20f64.to_radians(), 4e-3f64, 50e-3);
+    let speed = 1500.0 * PI / 30.0 * 61.0 / 78.0;
+    // Oil at 60 °C after Walther; density linear.
+    let y = |nu: f64| (nu + 0.7).log10().log10();
+    let fall = (y(100.0) - y(11.0)) / (373.15f64.log10() - 313.15f64.log10());
+    let nu = |t: f64| 10f64.powf(10f64.powf(y(100.0) - fall * (t.log10() - 313.15f64.log10()))) - 0.7;
+    let rho = |t: f64| 880.0 * (1.0 - 5.8e-4 * (t - 288.15));
+    let eta = |t: f64| nu(t) * 1e-6 * rho(t);
+    let t = 333.15;
+    let thinner = (eta(t - 1e-3) - eta(t + 1e-3)) / 2e-3 / eta(t);
+    let conductivity = 0.120 * (1.0 - 0.0005 * 60.0 / 3.0) / (rho(t) * 1e-3);
+    let pitch = PI * m * alpha.cos();
+    let [r_s, r_p, r_r] = [17.0, 22.0, 61.0].map(|z: f64| z * m / 2.0);
+    let beyond = |r: f64| ((r + m).powi(2) - (r * alpha.cos()).powi(2)).sqrt() - r * alpha.sin();
+    let ring = r_r * alpha.sin() - ((r_r - m).powi(2) - (r_r * alpha.cos()).powi(2)).sqrt();
+    // The first gear, the second with the sign of its curvature, and the ends of the path.
+    let meshes =
+        [("P1.sun-planet", r_s, r_p, beyond(r_p), beyond(r_s)), ("P1.planet-ring", r_p, -r_r, ring, beyond(r_p))];
+    for (name, r_1, r_2, before, after) in meshes {
+        let contact = s.contacts.get(name).unwrap();
+        let turn = speed * r_s / r_1;
+        let ratio = contact.contact_ratio;
+        close((before + after) / pitch, ratio, 1e-9);
+        let force = contact.line_load_n_per_m * b / ratio;
+        let steps = 100_000;
+        let mut sum = 0.0;
+        for k in 0..steps {
+            let x = -before + (before + after) * (f64::from(k) + 0.5) / f64::from(steps);
+            let (rho_1, rho_2) = (r_1 * alpha.sin() + x, r_2 * alpha.sin() - x);
+            let (u_1, u_2) = (turn * rho_1, turn * r_1 / r_2 * rho_2);
+            let (radius, total) = (rho_1 * rho_2 / (rho_1 + rho_2), u_1 + u_2);
+            let sliding = ((u_1 - u_2).abs() * 2.0 / total).powf(0.83);
+            let heat = eta(t) * thinner * (total / 2.0).powi(2) / conductivity;
+            let reduction = 1.0 / (1.0 + 0.1 * (1.0 + 14.8 * sliding) * heat.powf(0.64));
+            let film = 2.051e-7 * (total * eta(t) * 1e3).powf(0.67) * force.powf(-0.067) * radius.powf(0.464);
+            sum += 9e7 * reduction * film * b * total;
+        }
+        close(contact.rolling_loss_w, sum / f64::from(steps) * ratio * 3.0, 5e-4);
+    }
+}
+
+/// The technical report takes the load as uniform along the path and has the helix in its loss factor.
+#[test]
+fn iso_14179_1_brings_its_own_loss_factor() {
+    let text =
+        |law: &str| stage(3, 50.0, law, RATED).replace("width = \"50 mm\"", "width = \"50 mm\", helix = \"15 deg\"");
+    let contact = |law: &str| only(&text(law)).contacts.get("P1.sun-planet").unwrap().clone();
+    let whole = contact("mesh_friction = \"iso-14179-1\"");
+    let mix = contact("mesh_friction = \"iso-14179-1-friction\"");
+    let merritt = contact("mesh_friction = \"iso-14179-1-friction\"\nloss_factor = \"buckingham-merritt\"");
+    // By hand: without shifts the operating helix is that of the reference circle.
+    close(whole.loss_factor, merritt.loss_factor * 15f64.to_radians().cos().powi(2), 1e-12);
+    // A helix with an overlap above one: the factor that is chosen by default is a tenth larger here.
+    assert!(mix.loss_factor > 1.05 * whole.loss_factor, "{} {}", mix.loss_factor, whole.loss_factor);
+    // The same coefficient but for the torque, of which the losses at the planet take a little.
+    close(whole.friction.unwrap(), mix.friction.unwrap(), 1e-3);
+    let all = analysis(&text("mesh_friction = \"iso-14179-1\""));
+    let said = "tooth friction by `iso-14179-1`, loss factor `iso-14179-1`";
+    assert!(all.assumptions.iter().any(|a| a == said), "{:?}", all.assumptions);
+
+    let wrong = text("mesh_friction = \"iso-14179-1\"\nloss_factor = \"uniform\"");
+    let refused = Train::from_toml(&wrong).unwrap_err();
+    let d = refused.iter().next().unwrap();
+    assert_eq!((d.code, d.place.as_str()), (Code::Conflict, "laws.loss_factor"));
+    assert!(d.hints[0].contains("iso-14179-1-friction"), "{d:?}");
+}
+
+/// Under one lubrication gears and rotors turn in one fluid: by default in that in which the law of windage was measured.
+#[test]
+fn gears_and_rotors_turn_in_one_fluid() {
+    let with = |mist: &str, law: &str, fluid: &str| {
+        let text = stage(3, 50.0, law, RATED).replace("mist = 34.25\n", mist);
+        let s = only(&text.replace("radial_gap = \"10 mm\"", &format!("radial_gap = \"10 mm\"\n{fluid}")));
+        [source(&s, "sun"), source(&s, "drum")]
+    };
+    for law in ["", "windage = \"dawson-1984\""] {
+        // Nothing is known of the oil in the air: both turn in air.
+        let dry = with("", law, "");
+        assert_eq!(dry, with("", law, "fluid = \"air\""));
+        // Oil makes the air heavier for both.
+        let wet = with("mist = 34.25\n", law, "");
+        assert!(wet[1] > 4.0 * dry[1] && wet[0] >= dry[0], "{dry:?} {wet:?}");
+    }
+    // This law was measured in a mist, and the drum is in the same.
+    let law = "windage = \"anderson-loewenthal\"";
+    assert_eq!(with("", law, ""), with("mist = 34.25\n", law, ""));
+}
+
 // ---- Laws that every result keeps ----------------------------------------------------------------
 
 #[test]

@@ -611,7 +611,7 @@ fn simscape_has_the_efficiencies_of_gear_and_sets() {
     assert_eq!(m["zf_8hp70.state_1.sets.P4.ring_sun_ratio"], [[85.0 / 23.0]]);
 
     let request = ExportRequest {
-        temperatures: list(&["313.15 K", "333.15 K"]),
+        temperatures: list(&["313.15 K", "353.15 K"]),
         speeds: list(&["500 rpm", "1500 rpm"]),
         torques: list(&["-900 N m", "300 N m", "900 N m"]),
         ..ExportRequest::default()

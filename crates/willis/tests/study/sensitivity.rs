@@ -246,7 +246,7 @@ fn val_everything_that_can_be_given_by_differences() {
         "",
         "[laws]\nmesh_friction = \"matsumoto\"\nbearing = \"palmgren\"\nchurning = \"iso-14179-1\"\nseal = \"simrit\"",
         "[laws]\nmesh_friction = \"constant\"\nfriction_coefficient = 0.06\nload_sharing = \"stiffness\"\nbearing = \"harris\"",
-        "[laws]\nmesh_friction = \"iso-14179-1\"\nloss_factor = \"uniform\"",
+        "[laws]\nmesh_friction = \"iso-14179-1-friction\"\nloss_factor = \"uniform\"",
         "[laws]\nmesh_friction = \"xu-kahraman\"\nfilm_reduction = \"gupta-cheng\"",
         "[laws]\nwindage = \"dawson-1984\"",
     ];

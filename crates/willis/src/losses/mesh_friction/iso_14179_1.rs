@@ -1,8 +1,9 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{Meta, Range, Tag, Trust};
 
-/// Mean friction of a mesh after ISO/TR 14179-1, the thermal rating that came from AGMA.
+/// Mean friction of a mesh after ISO/TR 14179-1, the thermal rating that came from AGMA, with the tooth loss factor
+/// of that report.
 ///
 /// # Formula
 /// ```text
@@ -20,9 +21,8 @@ use crate::losses::{Meta, Range, Trust};
 /// The range in [`Law::META`].
 ///
 /// # Departs from the source
-/// Nothing in the coefficient. The technical report has its own loss factor
-/// (`cos²β_w/M`); here the coefficient is used with the one in force. For a ring the contact load
-/// factor takes `z2 − z1`.
+/// For a ring the contact load factor takes `z2 − z1`. The loss factor is `iso-14179-1`, whichever is chosen:
+/// [`Tag::OwnLossFactor`]. The same coefficient with the loss factor that is chosen is `iso-14179-1-friction`.
 ///
 /// # Source
 /// `[isotr14179_1]`, mesh coefficient of friction. The number of the equation there is not known to us.
@@ -48,24 +48,35 @@ impl Iso14179Part1 {
     pub const DEFAULT: Self = Self;
 }
 
+/// How far the coefficient was checked.
+pub(super) const TRUST: Trust = Trust::Confirm("the exponents 0.223, 0.40, 0.70, the divisor 3.239 and the range");
+
+/// Where the report uses the coefficient.
+pub(super) const VALID: &[Range<MeshContact<f64>>] = &[
+    Range { symbol: "v", unit: "m/s", min: 2.0, max: 25.0, get: |s| s.pitch_line_speed },
+    Range { symbol: "K", unit: "Pa", min: 1.4e6, max: 14e6, get: |s| s.k_factor },
+];
+
+/// The coefficient of the report.
+pub(super) fn coefficient<D: Real>(s: &MeshContact<D>) -> D {
+    let nu_mm2_s = s.kinematic_viscosity * 1e6;
+    let k_n_mm2 = s.k_factor * 1e-6;
+    let v_m_s = s.pitch_line_speed;
+    nu_mm2_s.powf(-0.223) * k_n_mm2.powf(-0.40) / (v_m_s.powf(0.70) * 3.239)
+}
+
 impl Law for Iso14179Part1 {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "iso-14179-1",
         by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1 (AGMA)",
         source: ("isotr14179_1", "mesh coefficient of friction"),
-        trust: Trust::Confirm("the exponents 0.223, 0.40, 0.70, the divisor 3.239 and the range"),
-        tags: &[],
-        valid: &[
-            Range { symbol: "v", unit: "m/s", min: 2.0, max: 25.0, get: |s| s.pitch_line_speed },
-            Range { symbol: "K", unit: "Pa", min: 1.4e6, max: 14e6, get: |s| s.k_factor },
-        ],
+        trust: TRUST,
+        tags: &[Tag::OwnLossFactor],
+        valid: VALID,
     };
 
     fn eval<D: Real>(&self, s: &MeshContact<D>) -> D {
-        let nu_mm2_s = s.kinematic_viscosity * 1e6;
-        let k_n_mm2 = s.k_factor * 1e-6;
-        let v_m_s = s.pitch_line_speed;
-        nu_mm2_s.powf(-0.223) * k_n_mm2.powf(-0.40) / (v_m_s.powf(0.70) * 3.239)
+        coefficient(s)
     }
 }

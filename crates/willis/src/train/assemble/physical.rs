@@ -243,6 +243,14 @@ impl Assembler<'_> {
                 self.report(*d);
             }
         }
+        if let (Some(given), Some(law)) = (&spec.loss_factor, self.laws.mesh_friction) {
+            let (own, friction) = (self.laws.loss_factor(&law).meta().id, law.meta().id);
+            if self.laws.loss_factor.meta().id != own {
+                let message = format!("the tooth friction `{friction}` has its own loss factor, not `{}`", clip(given));
+                let hint = format!("leave it out, or choose `mesh_friction = \"{friction}-friction\"`");
+                self.report(Diagnostic::new(Code::Conflict, "laws.loss_factor", message).hint(hint));
+            }
+        }
         const PLACE: &str = "laws.friction_coefficient";
         let Some(mu) = spec.friction_coefficient else { return };
         if self.positive(mu, true, "a coefficient of friction", "", PLACE) {

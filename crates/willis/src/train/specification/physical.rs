@@ -61,7 +61,8 @@ choice!(OilSupply { Bath = "bath", Jet = "jet", Mist = "mist", Grease = "grease"
 pub enum Fluid {
     /// Oil.
     Oil,
-    /// Air and oil mist.
+    /// What the gears turn in under a jet or a mist: air with oil in the ratio `mist` of `[oil]`, or what the law of
+    /// windage was measured in.
     #[default]
     Mist,
     /// Air.
@@ -222,8 +223,8 @@ specification! {
         may supply: Option<OilSupply>,
         /// Volume of oil in the sump; needed for churning.
         may volume: Option<Volume>,
-        /// Volumes of air to one volume of oil in the mist. Default: 34.25 for rotors and the windage law
-        /// anderson-loewenthal; without it gears turn in air under the other laws.
+        /// Volumes of air to one volume of oil in the mist in which gears and rotors turn. Default: 34.25 under the windage
+        /// law anderson-loewenthal, which was measured in it; air under the other laws.
         may mist: Option<f64>,
     }
 
@@ -425,7 +426,7 @@ specification! {
         must radial_gap: Length,
         /// Gap between each face and the wall. Default: the radial gap.
         may axial_gap: Option<Length>,
-        /// What it turns in. Default: mist.
+        /// What it turns in. Default: mist, the same fluid as the gears.
         may fluid: Option<Fluid>,
     }
 }
