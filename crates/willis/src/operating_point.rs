@@ -350,8 +350,8 @@ pub(crate) struct Physics<'t, R: Real = f64> {
     /// jets not at all.
     drags: Option<Vec<usize>>,
     forces: forces::Forces<R>,
-    /// By mesh: its tooth loss factor, which follows from the geometry alone.
-    loss_factors: Vec<OnceLock<R>>,
+    /// By mesh: what follows from its geometry alone.
+    fixed: Vec<OnceLock<contact::Fixed<R>>>,
     /// Amounts of relative speed below it count as this, rad/s.
     least_speed: f64,
 }
@@ -428,6 +428,14 @@ impl Step {
     }
 }
 
+impl Step {
+    /// The losses of the meshes alone.
+    pub fn without_drags(&self) -> Self {
+        let (sources, drags) = Default::default();
+        Self { sources, drags, ..self.clone() }
+    }
+}
+
 impl<R: Real> Step<R> {
     fn blank(train: &Train) -> Self {
         Self {
@@ -481,8 +489,8 @@ impl<'t, R: Real> Physics<'t, R> {
         let forces = forces::Forces::new(&train, &numbers);
         let within = |k: &usize| train.drags[*k].members.iter().all(|m| train.is_within(*m));
         let drags = Some((0..train.drags.len()).filter(within).collect());
-        let loss_factors = train.meshes.iter().map(|_| OnceLock::new()).collect();
-        Self { train, numbers, oil, friction, rolling, bodies, drags, forces, loss_factors, least_speed: 0.0 }
+        let fixed = train.meshes.iter().map(|_| OnceLock::new()).collect();
+        Self { train, numbers, oil, friction, rolling, bodies, drags, forces, fixed, least_speed: 0.0 }
     }
 
     /// Members on which a drag acts: the statics must see them, planets too.

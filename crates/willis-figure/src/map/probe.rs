@@ -33,6 +33,9 @@ impl Limits {
     }
 }
 
+/// Parts of a map that are worked off side by side.
+const PARTS: usize = 8;
+
 /// The limits, and the states between which the choice is, with their ratios where these are known.
 pub type Choice = (Limits, Vec<(String, Option<f64>)>);
 
@@ -44,6 +47,8 @@ pub struct Probe<'q, 's> {
     /// Of an automatic transmission: what limits the choice.
     choice: Option<Choice>,
     trains: Trains,
+    /// Answers where all places are points of the train of the file.
+    answers: Option<PointAnswers<'s>>,
     /// Compiled trains by state and quadrant of the map, and how often none was possible.
     compiled: HashMap<(Option<usize>, [bool; 2]), Result<CompiledProbe, usize>>,
     /// The zones that were met; a zone's number is its place here.
@@ -93,7 +98,10 @@ impl<'q, 's> Probe<'q, 's> {
         let targets = axes.map(target);
         let [x, y] = targets.map(|t| t.map_err(|d| Diagnostics::from_iter([*d])));
         let (trains, compiled, zones, loosest, seen) = Default::default();
-        Ok(Self { question, axes: [x?, y?], choice, trains, compiled, zones, loosest, seen })
+        let axes = [x?, y?];
+        let varies = axes.iter().any(|(target, _)| target.is_of_train());
+        let answers = (!varies).then(|| PointAnswers::new(question.model().train()));
+        Ok(Self { question, axes, choice, trains, answers, compiled, zones, loosest, seen })
     }
 
     /// The least count of idle parts in what was found so far.
@@ -122,19 +130,26 @@ impl<'q, 's> Probe<'q, 's> {
                 row.iter().filter(|place| !seen.contains_key(&place.map(f64::to_bits))).copied().collect()
             };
             let rows_unseen: Vec<Vec<[f64; 2]>> = rows.iter().map(|row| unseen(row)).collect();
-            let told = work::map(work, rows.len(), |k| {
+            // Rows that lie side by side have much in common.
+            let parts: Vec<&[Vec<[f64; 2]>]> = rows_unseen.chunks(rows_unseen.len().div_ceil(PARTS).max(1)).collect();
+            let told = work::map(work, parts.len(), |k| {
                 let mut trains = Trains::default();
-                let mut row: Vec<Told> = vec![];
-                let points = rows_unseen[k].iter().map(|place| asked(question, axes, *place, None, &mut trains));
-                PointAnswers::each(points, false, |answer, _| row.push(Told::of(&answer, None)));
-                work.advance(rows[k].len() as u64);
-                row
+                let mut part: Vec<Told> = vec![];
+                let points = parts[k].iter().flatten().map(|place| asked(question, axes, *place, None, &mut trains));
+                PointAnswers::each(points, false, |answer, _| {
+                    part.push(Told::of(&answer, None));
+                    work.advance(1);
+                });
+                part
             })?;
             // In their order, so that zones have the same numbers however the work was shared.
             for (place, told) in rows_unseen.iter().flatten().zip(told.into_iter().flatten()) {
                 let found = self.noted(MapPoint::of(&told, None), told.ways);
                 self.seen.insert(place.map(f64::to_bits), found);
             }
+            work.advance(
+                (rows.iter().map(Vec::len).sum::<usize>() - rows_unseen.iter().map(Vec::len).sum::<usize>()) as u64,
+            );
             return Ok(rows.iter().flatten().map(|place| self.at(*place)).collect());
         }
         let mut all = vec![];
@@ -235,8 +250,11 @@ impl<'q, 's> Probe<'q, 's> {
             Ok(asked) => asked,
             Err(wrong) => return Told::of(&PointAnswer::refused(wrong), input),
         };
-        let answer = PointAnswer::of(&train, &operation);
-        if tries < TRIES && answer.is_unique() {
+        let answer = match &mut self.answers {
+            Some(answers) => answers.numbers(&operation),
+            None => PointAnswer::of(&train, &operation),
+        };
+        if tries < TRIES && answer.solution.is_some() && answer.is_unique() {
             let axes = self.axes.each_ref().map(|a| &a.0);
             let compiled = CompiledProbe::new(&train, &operation, &axes, &place, &answer, input);
             self.compiled.insert(key, compiled.ok_or(tries + 1));

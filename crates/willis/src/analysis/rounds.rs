@@ -169,9 +169,20 @@ impl<'a> Rounds<'a> {
                 }
             }
         }
-        let gives = acting.iter().any(|x| x.torque * self.speeds[x.member.0] < 0.0);
-        let drives = gives || c.degrees_of_freedom() != 1 || self.problem.are_none();
+        let gives = acting.iter().any(|x| x.torque * self.speeds[x.member.0] < 0.0 && x.is_certain());
+        let drives = gives
+            || c.degrees_of_freedom() != 1
+            || self.problem.are_none()
+            // Drag may eat a small load up; only tooth friction locks.
+            || self.drives_without_drags(step);
         drives && equilibrium.is_only(self.known.columns, &rho, &torques)
+    }
+
+    /// Whether a load is driven, beyond doubt, if nothing but the losses of the meshes resists.
+    fn drives_without_drags(&self, step: &Step) -> bool {
+        let step = step.without_drags();
+        let gives = |x: &Acting| x.torque * self.speeds[x.member.0] < 0.0 && x.is_certain();
+        self.flow(&step).is_some_and(|flow| self.acting(&step, &flow).iter().any(gives))
     }
 }
 
@@ -192,6 +203,17 @@ pub(super) struct Acting {
     pub torque: f64,
     /// The sum of the sizes of the terms that it is a sum of.
     pub size: f64,
+}
+
+/// A torque that is a sum of terms is certain in sign where it is larger than this part of their sizes: far above what
+/// rounding makes of them.
+const CERTAIN: f64 = 1e-9;
+
+impl Acting {
+    /// Whether its sign is beyond the doubts of rounding.
+    pub fn is_certain(&self) -> bool {
+        self.torque.abs() > CERTAIN * self.size
+    }
 }
 
 impl Agreed {

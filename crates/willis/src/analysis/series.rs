@@ -23,16 +23,12 @@ use super::operation::Pattern;
 use super::rounds::{Acting, Agreed, Rounds};
 use super::solution::{efficiency, held, member};
 use super::words::{self, Finding};
-use super::{Losses, OperationReport, OutsideLaw, Role, SolutionReport, at_its_temperature};
+use super::{Losses, OperationReport, OutsideLaw, Role, SolutionReport, Why, at_its_temperature};
 
 /// Most patterns of drivers that are kept of points that prescribe the same.
 const MOST_PATTERNS: usize = 16;
 /// Most choices of what is prescribed that are kept.
 const MOST_SITUATIONS: usize = 64;
-/// A torque that is a sum of terms is certain in sign where it is larger than this part of their sizes: far above what
-/// rounding makes of them.
-const CERTAIN: f64 = 1e-9;
-
 /// The numbers of a member in an operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -105,8 +101,9 @@ impl PointNumbers {
 pub(crate) enum Told {
     /// All that is known, with its warnings and notes.
     Whole(Box<OperationReport>, Diagnostics),
-    /// The numbers of a point with exactly one equilibrium, its warnings and notes, and which laws they are about.
-    Numbers(PointNumbers, Diagnostics, Vec<OutsideLaw>),
+    /// The numbers of a point with exactly one equilibrium, what is to be said of that, warnings and notes, and which laws
+    /// they are about.
+    Numbers { numbers: PointNumbers, why: Option<Why>, notes: Diagnostics, outside: Vec<OutsideLaw> },
 }
 
 /// Answers at many operating points of one train.
@@ -230,17 +227,20 @@ impl<'t> PointSeries<'t> {
         });
         let agreed = agreed.next()?;
         let flow = agreed.whole(c, &externals(c, &motion, &problem, &agreed)?);
-        // What only dissipates is explained in words.
-        let is_driven = flow.roles.contains(&-1);
+        let takes_all = !flow.roles.contains(&-1);
         let numbers = [flow.loss, flow.input_power, flow.output_power];
-        if !is_driven || !numbers.into_iter().chain(flow.torques.iter().flatten().copied()).all(f64::is_finite) {
+        let mut all = numbers.into_iter().chain(flow.torques.iter().flatten().copied());
+        if takes_all && !flow.roles.contains(&1) || !all.all(f64::is_finite) {
             return None;
         }
         let step = &agreed.step;
         let told = physics.told(step, &flow);
         let doubts = doubts(train, flow.input_power, &told.contacts, &told.bearings, &told.shafts);
         let outside = OutsideLaw::of(&told.extrapolations);
-        let findings = outside.iter().cloned().map(Finding::Outside).chain(doubts.into_iter().map(Finding::Doubt));
+        let why = takes_all.then_some(Why::LossesTakeAll);
+        let findings = (why.iter().cloned().map(Finding::Why))
+            .chain(outside.iter().cloned().map(Finding::Outside))
+            .chain(doubts.into_iter().map(Finding::Doubt));
         let notes = words::found(train, operation, &findings.collect::<Vec<_>>());
         let held = held(c, operation);
         let driver = |m: &MeshFlow| m.driver.map(|d| train.meshes[m.mesh.index()].gears[d].member);
@@ -254,7 +254,7 @@ impl<'t> PointSeries<'t> {
             members: (1..train.members.len()).map(|m| member(&motion, &flow, &held, MemberId(m))).collect(),
             drivers: flow.meshes.iter().map(driver).collect(),
         };
-        Some(Told::Numbers(numbers, notes, outside))
+        Some(Told::Numbers { numbers, why, notes, outside })
     }
 }
 
@@ -264,7 +264,7 @@ fn externals(c: &Configuration<'_>, motion: &Motion, problem: &Loads, agreed: &A
         let sign = match prescribed {
             Some(torque) => torque.sign(),
             None if c.node(*member).is_none() => 0,
-            None if x.torque.abs() <= CERTAIN * x.size => return None,
+            None if !x.is_certain() => return None,
             None => x.torque.signum() as i8,
         };
         let way = motion.speeds[member.0].as_ref().map_or(0, Rational::sign);

@@ -142,7 +142,7 @@ impl Target {
     }
 
     /// Whether the train itself changes with it, not only the operating point.
-    pub(crate) fn is_of_train(&self) -> bool {
+    pub fn is_of_train(&self) -> bool {
         matches!(self, Self::Law(_) | Self::File(_))
     }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::geometry::Pair;
 use crate::losses::film::FilmContact;
 use crate::losses::film_reduction::Inlet;
 use crate::losses::load_sharing::ToothLoad;
@@ -176,6 +177,31 @@ pub(super) struct Tooth<R> {
     pub rolling: R,
 }
 
+/// A place of the path of contact: what follows from the geometry alone.
+#[derive(Clone, Copy, Debug)]
+struct Place<R> {
+    /// Part of the load of the mesh that a tooth pair carries here.
+    share: R,
+    /// Reduced radius of curvature, m.
+    radius: R,
+    /// Sliding speed, and the sum of the surface speeds, over the speed of the first gear relative to the carrier, m.
+    sliding: R,
+    sum: R,
+}
+
+/// What of a mesh follows from its geometry alone; worked out once.
+#[derive(Debug)]
+pub(super) struct Fixed<R> {
+    loss_factor: R,
+    pitch: Place<R>,
+    /// Where friction that differs from place to place is averaged, with weights; empty for other laws.
+    friction: Vec<(Place<R>, R)>,
+    /// Where the rolling loss is averaged, with weights whose sum is one; empty without such a law.
+    rolling: Vec<(Place<R>, R)>,
+    /// The ends of each part of the path with as many tooth pairs, just inside.
+    ends: Vec<Place<R>>,
+}
+
 /// One mesh at one load.
 struct Loaded<'a, R: Real> {
     physics: &'a Physics<'a, R>,
@@ -192,36 +218,20 @@ struct Loaded<'a, R: Real> {
 }
 
 impl<R: Real> Loaded<'_, R> {
-    /// Where a tooth pair more or less is in contact: whole base pitches from both ends, and C.
-    fn breaks(&self) -> [R; 2 * MOST_PAIRS + 1] {
-        let pair = &self.teeth.pair;
-        let [start, end] = pair.path();
-        let mut breaks = [R::from(0.0); 2 * MOST_PAIRS + 1];
-        for k in 0..MOST_PAIRS {
-            breaks[2 * k] = real::min(pair.base_pitch * k as f64 + start, end);
-            breaks[2 * k + 1] = real::max(-(pair.base_pitch * k as f64) + end, start);
-        }
-        breaks.sort_by(|a, b| a.re().total_cmp(&b.re()));
-        breaks
-    }
-
     /// Whether the teeth are pressed together and move.
     fn works(&self) -> bool {
         self.base_force.re() > 0.0 && self.pitch_line_speed.re() > 0.0
     }
 
     fn point(&self, s: R) -> Point<R> {
+        self.at(&self.physics.place(&self.teeth.pair, s))
+    }
+
+    fn at(&self, place: &Place<R>) -> Point<R> {
         let pair = &self.teeth.pair;
-        let place = ToothLoad {
-            position: pair.position(s),
-            contact_ratio: pair.contact_ratio,
-            overlap_ratio: pair.overlap_ratio,
-        };
-        let share = self.physics.train.laws.load_sharing.eval(&place);
-        let line_load = share * self.normal_force * pair.cos_base_helix() / pair.total_width();
-        let radius = real::max(pair.reduced_radius(s), R::from(1e-9));
-        let sliding = pair.sliding_per_speed(s) * self.speed;
-        let sum = pair.sum_speed_per_speed(s) * self.speed;
+        let line_load = place.share * self.normal_force * pair.cos_base_helix() / pair.total_width();
+        let radius = place.radius;
+        let [sliding, sum] = [place.sliding, place.sum].map(|per_speed| per_speed * self.speed);
         let modulus = self.teeth.reduced_modulus();
         let pressure = root(line_load * modulus / (radius * std::f64::consts::TAU));
         let none = R::from(0.0);
@@ -281,6 +291,24 @@ impl<R: Real> Loaded<'_, R> {
     }
 }
 
+/// Where a tooth pair more or less is in contact: whole base pitches from both ends, and C.
+fn breaks<R: Real>(pair: &Pair<R>) -> [R; 2 * MOST_PAIRS + 1] {
+    let [start, end] = pair.path();
+    let mut breaks = [R::from(0.0); 2 * MOST_PAIRS + 1];
+    for k in 0..MOST_PAIRS {
+        breaks[2 * k] = real::min(pair.base_pitch * k as f64 + start, end);
+        breaks[2 * k + 1] = real::max(-(pair.base_pitch * k as f64) + end, start);
+    }
+    breaks.sort_by(|a, b| a.re().total_cmp(&b.re()));
+    breaks
+}
+
+/// The parts of the path of contact between those, within its ends.
+fn parts<R: Real>(pair: &Pair<R>) -> impl Iterator<Item = [R; 2]> {
+    let ([start, end], breaks) = (pair.path(), breaks(pair));
+    (0..breaks.len() - 1).map(move |k| [real::max(breaks[k], start), real::min(breaks[k + 1], end)])
+}
+
 /// Rms roughness of both flanks together.
 fn composite<R: Real>(teeth: &Teeth<R>) -> R {
     root(teeth.roughness[0].powi(2) + teeth.roughness[1].powi(2)) * RMS
@@ -308,35 +336,62 @@ impl<R: Real> Physics<'_, R> {
         }
     }
 
-    /// The tooth loss factor of a mesh: an integral over the path of contact, worked out once.
-    fn loss_factor(&self, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> R {
-        *self.loss_factors[flow.mesh.0]
-            .get_or_init(|| self.train.laws.loss_factor(&self.friction).eval(&Path::of(&teeth.pair)))
+    /// What of a mesh follows from its geometry alone: integrals over the path of contact among it, worked out once.
+    fn fixed(&self, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> &Fixed<R> {
+        self.fixed[flow.mesh.0].get_or_init(|| {
+            let pair = &teeth.pair;
+            let none = R::from(0.0);
+            let [start, end] = pair.path();
+            let place = |(s, w): (R, R)| (self.place(pair, s), w);
+            let local = self.friction.meta().tags.contains(&Tag::Local);
+            // Away from the pitch point sliding heats the inlet and thins the film, on both sides alike, so the film has a
+            // kink there.
+            let pitch = real::min(real::max(none, start), end);
+            let both = gauss(start, pitch).chain(gauss(pitch, end)).map(|(s, w)| (s, w / (end - start)));
+            let inside = |[from, to]: [R; 2]| [from + (to - from) * 1e-9, to - (to - from) * 1e-9];
+            let ends = parts(pair).filter(|[from, to]| to.re() > from.re()).flat_map(inside);
+            Fixed {
+                loss_factor: self.train.laws.loss_factor(&self.friction).eval(&Path::of(pair)),
+                pitch: self.place(pair, none),
+                friction: parts(pair).flat_map(|[from, to]| gauss(from, to)).map(place).filter(|_| local).collect(),
+                rolling: both.map(place).filter(|_| self.rolling.is_some()).collect(),
+                ends: ends.map(|s| self.place(pair, s)).collect(),
+            }
+        })
+    }
+
+    fn place(&self, pair: &Pair<R>, s: R) -> Place<R> {
+        let place = ToothLoad {
+            position: pair.position(s),
+            contact_ratio: pair.contact_ratio,
+            overlap_ratio: pair.overlap_ratio,
+        };
+        Place {
+            share: self.train.laws.load_sharing.eval(&place),
+            radius: real::max(pair.reduced_radius(s), R::from(1e-9)),
+            sliding: pair.sliding_per_speed(s),
+            sum: pair.sum_speed_per_speed(s),
+        }
     }
 
     /// Friction and rolling loss of a mesh.
     pub(super) fn tooth(&self, mesh: &Mesh, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> Tooth<R> {
-        let pair = &teeth.pair;
-        let loss_factor = self.loss_factor(teeth, flow);
+        let fixed = self.fixed(teeth, flow);
+        let loss_factor = fixed.loss_factor;
         let loaded = self.loaded(mesh, teeth, flow);
         let none = R::from(0.0);
         let mut tooth = Tooth { friction: None, loss_factor, rolling: none };
         if !loaded.works() || !mesh.computed {
             return tooth;
         }
-        let [start, end] = pair.path();
-        let pitch = self.state(mesh, &loaded, &loaded.point(none), loss_factor);
+        let pitch = self.state(mesh, &loaded, &loaded.at(&fixed.pitch), loss_factor);
         let mu = if self.friction.meta().tags.contains(&Tag::Local) {
             let (mut friction, mut weight) = (none, none);
-            let breaks = loaded.breaks();
-            for k in 0..breaks.len() - 1 {
-                let (from, to) = (real::max(breaks[k], start), real::min(breaks[k + 1], end));
-                for (place, w) in gauss(from, to) {
-                    let p = loaded.point(place);
-                    let own = w * p.line_load * p.sliding;
-                    weight += own;
-                    friction += own * self.coefficient(&pitch.at(&p));
-                }
+            for (place, w) in &fixed.friction {
+                let p = loaded.at(place);
+                let own = *w * p.line_load * p.sliding;
+                weight += own;
+                friction += own * self.coefficient(&pitch.at(&p));
             }
             if weight.re() > 0.0 { friction / weight } else { none }
         } else {
@@ -347,13 +402,10 @@ impl<R: Real> Physics<'_, R> {
         }
 
         if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
-            // Mean over the path: away from the pitch point sliding heats the inlet and thins the film, on both sides
-            // alike, so the film has a kink there.
-            let pitch = real::min(real::max(none, start), end);
-            let sum = gauss(start, pitch)
-                .chain(gauss(pitch, end))
-                .fold(none, |sum, (place, w)| sum + law.eval(&loaded.rolling_contact(oil, &loaded.point(place))) * w);
-            let rolling = sum / (end - start) * pair.contact_ratio * f64::from(mesh.count);
+            let mean = |sum: R, (place, w): &(Place<R>, R)| {
+                sum + law.eval(&loaded.rolling_contact(oil, &loaded.at(place))) * *w
+            };
+            let rolling = fixed.rolling.iter().fold(none, mean) * teeth.pair.contact_ratio * f64::from(mesh.count);
             tooth.rolling = if rolling.re().is_finite() { real::max(rolling, none) } else { none };
         }
         tooth
@@ -444,7 +496,7 @@ impl Physics<'_> {
         if !loaded.works() {
             return None;
         }
-        let loss_factor = self.loss_factor(teeth, flow);
+        let loss_factor = self.fixed(teeth, flow).loss_factor;
         let local = self.friction.meta().tags.contains(&Tag::Local);
         let mean = self.tooth(mesh, teeth, flow).friction;
         let composite = composite(teeth);
@@ -473,10 +525,8 @@ impl Physics<'_> {
             }
         };
         let [start, end] = pair.path();
-        let breaks = loaded.breaks();
         let (mut stations, mut work) = (Vec::new(), 0.0);
-        for k in 0..breaks.len() - 1 {
-            let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
+        for [from, to] in parts(pair) {
             if to - from <= 1e-9 * (end - start) {
                 continue;
             }
@@ -500,26 +550,19 @@ impl Physics<'_> {
         let pair = &teeth.pair;
         let laws = &self.train.laws;
         let path = Path::of(pair);
-        let loss_factor = self.loss_factor(teeth, flow);
+        let fixed = self.fixed(teeth, flow);
+        let loss_factor = fixed.loss_factor;
         let loaded = self.loaded(mesh, teeth, flow);
         let driver = flow.driver.unwrap_or(0);
-        let pitch = loaded.point(0.0);
+        let pitch = loaded.at(&fixed.pitch);
         let [start, end] = pair.path();
-        let breaks = loaded.breaks();
 
-        // Extremes: at the ends of each part of the path, just inside.
         let mut worst = Point { film: f64::INFINITY, ..pitch };
-        for k in 0..breaks.len() - 1 {
-            let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
-            for s in [from + 1e-9 * (to - from), to - 1e-9 * (to - from)] {
-                if to <= from {
-                    continue;
-                }
-                let p = loaded.point(s);
-                worst.pressure = worst.pressure.max(p.pressure);
-                worst.sliding = worst.sliding.max(p.sliding);
-                worst.film = worst.film.min(p.film);
-            }
+        for place in &fixed.ends {
+            let p = loaded.at(place);
+            worst.pressure = worst.pressure.max(p.pressure);
+            worst.sliding = worst.sliding.max(p.sliding);
+            worst.film = worst.film.min(p.film);
         }
         let film = self.oil.is_some().then_some(if worst.film.is_finite() { worst.film } else { pitch.film });
         let composite = composite(teeth);

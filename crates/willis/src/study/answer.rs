@@ -138,9 +138,10 @@ impl PointAnswer {
                 let deviation = speed_deviation.map(|d| d.relative);
                 (verdict, reason, solution, numbers, ratio, deviation, notes, outside_laws)
             }
-            Ok(Told::Numbers(numbers, notes, outside)) => {
+            Ok(Told::Numbers { numbers, why, notes, outside }) => {
                 let ratio = ratio(train, operation, |m| numbers.member(m)?.speed_rad_s);
-                (Verdict::Unique, None, None, Some(numbers), ratio, None, notes, outside)
+                let reason = why.map(|why| why.to_string());
+                (Verdict::Unique, reason, None, Some(numbers), ratio, None, notes, outside)
             }
             Err(wrong) => return Self::refused(wrong),
         };
