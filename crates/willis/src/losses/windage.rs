@@ -31,6 +31,7 @@ family! {
     Windage ("windage"): Disc => "P" ["W"];
     diab::Diab,
     dawson_1984::Dawson1984,
+    maurer::Maurer,
     anderson_loewenthal::AndersonLoewenthal,
 }
 

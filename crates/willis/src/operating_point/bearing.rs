@@ -163,12 +163,15 @@ impl<R: Real> Physics<'_, R> {
         let mut torque = fixed(none);
         let mut radial = 0.0f64;
         let mut worst = fixed(none);
+        let beyond_mean = self.load_sharing(mount, &carried.loading) - 1.0;
         // Bearings side by side mostly carry the same.
         let mut last = None::<(Dual<R>, Dual<R>)>;
         for own in radials {
             let own = *own + fixed(numbers.radial_load / count);
-            if own.re.re() >= radial {
-                (radial, worst) = (own.re.re(), own);
+            // What the teeth make of the load, of the planet that is loaded most.
+            let hardest = own + fixed(own.eps * beyond_mean);
+            if hardest.re.re() >= radial {
+                (radial, worst) = (hardest.re.re(), hardest);
             }
             if speed.re() > 0.0 {
                 let known = last.filter(|(load, _)| *load == own);
@@ -184,6 +187,13 @@ impl<R: Real> Physics<'_, R> {
         let all = real::max(finite(torque.re), none) * f64::from(number);
         let proportional = real::clamp(finite(torque.eps) * f64::from(number), none, all);
         Friction { speed, torque: all, proportional, loads: [radial, axial.re.re()] }
+    }
+
+    /// Load of the planet that is loaded most over the mean, at the bearings of planets; else 1.
+    fn load_sharing(&self, mount: &BearingMount, loading: &[(usize, R)]) -> f64 {
+        let planet = self.train.planets.iter().any(|p| mount.members.contains(&p.member));
+        let factors = loading.iter().filter_map(|(j, _)| self.train.meshes[*j].teeth.as_ref().map(|t| t.sharing));
+        factors.filter(|_| planet).fold(1.0, f64::max)
     }
 
     /// The law for a bearing: the SKF model has no constants for some kinds; Palmgren has.

@@ -54,7 +54,8 @@ impl Regime {
     }
 }
 
-/// A tooth contact in an operating point. Loads are those of one of the pairs in parallel.
+/// A tooth contact in an operating point. Loads are the mean of the pairs in parallel, pressures and films those of the
+/// pair that is loaded most (`load_sharing_factor`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -320,10 +321,16 @@ fn root<R: Real>(x: R) -> R {
 }
 
 impl<R: Real> Physics<'_, R> {
+    /// The mean of the pairs in parallel.
     fn loaded<'a>(&'a self, mesh: &Mesh, teeth: &'a Teeth<R>, flow: &MeshFlow<R>) -> Loaded<'a, R> {
+        self.loaded_by(1.0, mesh, teeth, flow)
+    }
+
+    /// A pair that bears so many times the mean of those in parallel.
+    fn loaded_by<'a>(&'a self, times: f64, mesh: &Mesh, teeth: &'a Teeth<R>, flow: &MeshFlow<R>) -> Loaded<'a, R> {
         let pair = &teeth.pair;
         let driver = flow.driver.unwrap_or(0);
-        let torque = real::abs(flow.torques[driver]) / f64::from(mesh.count);
+        let torque = real::abs(flow.torques[driver]) / f64::from(mesh.count) * times;
         let base_force = torque / pair.gears[driver].base_radius;
         Loaded {
             physics: self,
@@ -497,6 +504,7 @@ impl Physics<'_> {
             return None;
         }
         let loss_factor = self.fixed(teeth, flow).loss_factor;
+        let hardest = self.loaded_by(teeth.sharing, mesh, teeth, flow);
         let local = self.friction.meta().tags.contains(&Tag::Local);
         let mean = self.tooth(mesh, teeth, flow).friction;
         let composite = composite(teeth);
@@ -511,13 +519,14 @@ impl Physics<'_> {
             let friction = friction.filter(|mu| mu.is_finite());
             // Normal force of the pair here: line load times the length of its lines of contact.
             let force = p.line_load * pair.total_width() / pair.base_helix.cos();
-            let film = (self.oil.is_some() && p.film > 0.0 && p.film.is_finite()).then_some(p.film);
+            let Point { pressure, film, .. } = hardest.point(s);
+            let film = (self.oil.is_some() && film > 0.0 && film.is_finite()).then_some(film);
             Station {
                 s,
                 line_load: p.line_load,
                 sliding: p.sliding,
                 sum: p.sum,
-                pressure: p.pressure,
+                pressure,
                 film,
                 film_ratio: film.filter(|_| composite > 0.0).map(|h| h / composite),
                 friction,
@@ -555,16 +564,19 @@ impl Physics<'_> {
         let loaded = self.loaded(mesh, teeth, flow);
         let driver = flow.driver.unwrap_or(0);
         let pitch = loaded.at(&fixed.pitch);
+        let hardest = self.loaded_by(teeth.sharing, mesh, teeth, flow);
+        let hard = hardest.at(&fixed.pitch);
         let [start, end] = pair.path();
 
-        let mut worst = Point { film: f64::INFINITY, ..pitch };
+        // Extremes: at the ends of each part of the path, just inside.
+        let mut worst = Point { film: f64::INFINITY, ..hard };
         for place in &fixed.ends {
-            let p = loaded.at(place);
+            let p = hardest.at(place);
             worst.pressure = worst.pressure.max(p.pressure);
             worst.sliding = worst.sliding.max(p.sliding);
             worst.film = worst.film.min(p.film);
         }
-        let film = self.oil.is_some().then_some(if worst.film.is_finite() { worst.film } else { pitch.film });
+        let film = self.oil.is_some().then_some(if worst.film.is_finite() { worst.film } else { hard.film });
         let composite = composite(teeth);
         let film_ratio = film.filter(|_| composite > 0.0 && loaded.base_force > 0.0).map(|h| h / composite);
 
@@ -580,9 +592,9 @@ impl Physics<'_> {
             pitch_line_speed_m_s: loaded.pitch_line_speed,
             sum_speed_m_s: pitch.sum,
             sliding_speed_m_s: worst.sliding,
-            pitch_pressure_pa: pitch.pressure,
+            pitch_pressure_pa: hard.pressure,
             pressure_pa: worst.pressure,
-            pitch_film_m: film.map(|_| pitch.film),
+            pitch_film_m: film.map(|_| hard.film),
             film_m: film,
             film_ratio,
             regime: film_ratio.map(Regime::of),

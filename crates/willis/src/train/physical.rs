@@ -25,6 +25,8 @@ pub struct Teeth<R = f64> {
     pub hand: f64,
     /// Where the middle of the teeth stands along the axis, m.
     pub position: Option<R>,
+    /// Load of the mesh that is loaded most of those in parallel over the mean, `K_γ`, ≥ 1.
+    pub sharing: f64,
     /// Young's modulus, Pa.
     pub youngs_modulus: R,
     /// Poisson's ratio.

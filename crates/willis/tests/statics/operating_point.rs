@@ -379,6 +379,34 @@ fn gears_and_rotors_turn_in_one_fluid() {
     assert_eq!(with("", law, ""), with("mist = 34.25\n", law, ""));
 }
 
+/// The planet that bears more than the mean has more pressure, a thinner film and more load on its bearings; what all of
+/// them lose is that of the mean.
+#[test]
+fn one_planet_bears_more_than_the_mean() {
+    let text = |factor: &str| {
+        let text = stage(3, 50.0, "", RATED).replace(", mass = \"0.7 kg\"", "");
+        text.replace("width = \"50 mm\"", &format!("width = \"50 mm\"{factor}"))
+    };
+    let (even, uneven) = (only(&text("")), only(&text(", load_sharing_factor = 1.2")));
+    assert_eq!(even.loss_w, uneven.loss_w);
+    for name in ["P1.sun-planet", "P1.planet-ring"] {
+        let [a, b] = [&even, &uneven].map(|s| s.contacts.get(name).unwrap());
+        assert_eq!((a.friction, a.line_load_n_per_m), (b.friction, b.line_load_n_per_m));
+        close(b.pressure_pa, a.pressure_pa * 1.2f64.sqrt(), 1e-12);
+        close(b.film_m.unwrap(), a.film_m.unwrap() * 1.2f64.powf(-0.13), 1e-3);
+    }
+    let load = |s: &SolutionReport, name: &str| s.bearings.get(name).unwrap().radial_load_n;
+    close(load(&uneven, "planet bearings"), 1.2 * load(&even, "planet bearings"), 1e-12);
+    assert_eq!(load(&uneven, "sun bearing"), load(&even, "sun bearing"));
+    let said = analysis(&text(", load_sharing_factor = 1.2")).assumptions;
+    assert!(said.iter().any(|a| a.starts_with("of parallel planets one bears up to 1.2 times the mean")), "{said:?}");
+    for wrong in ["0.9", "nan", "-1.0", "11.0"] {
+        let d = Train::from_toml(&text(&format!(", load_sharing_factor = {wrong}"))).unwrap_err();
+        let d = d.iter().next().unwrap();
+        assert_eq!((d.code, d.place.as_str()), (Code::OutOfRange, "set[0].geometry.load_sharing_factor"));
+    }
+}
+
 // ---- Laws that every result keeps ----------------------------------------------------------------
 
 #[test]

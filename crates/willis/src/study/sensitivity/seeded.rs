@@ -37,6 +37,7 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -
             }),
             hand: t.hand,
             position: t.position.map(|x| seeded(Slot::Position(j), x)),
+            sharing: t.sharing,
             youngs_modulus: seeded(Slot::YoungsModulus(j), t.youngs_modulus),
             poisson_ratio: seeded(Slot::PoissonRatio(j), t.poisson_ratio),
             stiffness: t.stiffness,

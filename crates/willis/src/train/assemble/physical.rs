@@ -97,6 +97,15 @@ impl Assembler<'_> {
         ] {
             good &= self.positive(value, zero, what, unit, &format!("{at}.{key}"));
         }
+        if let Some(k) = g.load_sharing_factor.filter(|k| !(1.0..=10.0).contains(k)) {
+            let message =
+                format!("a load sharing factor of {k}: the planet that is loaded most bears 1 to 10 times the mean");
+            let d = Diagnostic::new(Code::OutOfRange, format!("{at}.load_sharing_factor"), message);
+            self.report_once(
+                d.hint("1 to 1.4 is usual; ABS takes 1 up to three planets, 1.2 for four, 1.3 for five, 1.4 for more"),
+            );
+            good = false;
+        }
         if !(0.0..0.5).contains(&g.poisson_ratio()) {
             let message = format!("a Poisson's ratio of {}: it lies from 0 to below 0.5", g.poisson_ratio());
             self.report_once(Diagnostic::new(Code::OutOfRange, format!("{at}.poisson_ratio"), message));
@@ -193,6 +202,7 @@ impl Assembler<'_> {
                 speed: g.jet_speed.unwrap_or(0.0),
                 side: g.jet_side.unwrap_or(JetSide::IntoMesh),
             }),
+            sharing: g.load_sharing_factor.unwrap_or(1.0),
             youngs_modulus: g.youngs_modulus(),
             poisson_ratio: g.poisson_ratio(),
             stiffness,

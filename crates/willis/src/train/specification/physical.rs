@@ -179,6 +179,9 @@ specification! {
         may dedendum: Option<f64>,
         /// Arithmetic mean roughness Ra of the flanks.
         may roughness: Option<Length>,
+        /// Load of the planet that is loaded most over the mean, K_gamma, 1 or more. Pressures, films and loads of planet
+        /// bearings are those of that planet; losses follow the mean. Default: 1, all planets alike.
+        may load_sharing_factor: Option<f64>,
         /// Of the gear material. Default: steel, 206 GPa.
         may youngs_modulus: Option<Pressure>,
         /// Of the gear material. Default: 0.3.
