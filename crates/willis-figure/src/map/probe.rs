@@ -135,13 +135,17 @@ impl<'q, 's> Probe<'q, 's> {
             let told = work::map(work, parts.len(), |k| {
                 let mut trains = Trains::default();
                 let mut part: Vec<Told> = vec![];
-                let points = parts[k].iter().flatten().map(|place| asked(question, axes, *place, None, &mut trains));
+                let places = parts[k].iter().flatten().take_while(|_| !work.cancelled());
+                let points = places.map(|place| asked(question, axes, *place, None, &mut trains));
                 PointAnswers::each(points, false, |answer, _| {
                     part.push(Told::of(&answer, None));
                     work.advance(1);
                 });
                 part
             })?;
+            if work.cancelled() {
+                return Err(Cancelled);
+            }
             // In their order, so that zones have the same numbers however the work was shared.
             for (place, told) in rows_unseen.iter().flatten().zip(told.into_iter().flatten()) {
                 let found = self.noted(MapPoint::of(&told, None), told.ways);
