@@ -396,7 +396,8 @@ fn one_planet_bears_more_than_the_mean() {
         close(b.film_m.unwrap(), a.film_m.unwrap() * 1.2f64.powf(-0.13), 1e-3);
     }
     let load = |s: &SolutionReport, name: &str| s.bearings.get(name).unwrap().radial_load_n;
-    close(load(&uneven, "planet bearings"), 1.2 * load(&even, "planet bearings"), 1e-12);
+    // But for what does not come from the load: the drag of the planet in its fluid and bearings.
+    close(load(&uneven, "planet bearings"), 1.2 * load(&even, "planet bearings"), 1e-5);
     assert_eq!(load(&uneven, "sun bearing"), load(&even, "sun bearing"));
     let said = analysis(&text(", load_sharing_factor = 1.2")).assumptions;
     assert!(said.iter().any(|a| a.starts_with("of parallel planets one bears up to 1.2 times the mean")), "{said:?}");
