@@ -2,12 +2,14 @@
 //!
 //! A choice of n points has `T = C(n, M-1)` states. A chain of f gears needs f different forward ratios, and r reverse
 //! gears need r more, so at most `T - f` states may be no forward gear and at most `T - f - r` may be no gear at all; of
-//! the states with ratio 1 all but one are as good as none. Points are added one by one; each adds states and none goes
+//! the states with one ratio all but one are as good as none. Points are added one by one; each adds states and none goes
 //! away, so a choice that exceeds a bound is left with everything that begins so. What is left out is excluded by proof.
+//! Whole choices are looked at twice: in floating point with a window of steps that is a little too wide, and what
+//! remains exactly.
 
 use super::motion::MAX_MOBILITY;
 use super::points::Points;
-use super::table::{Cost, Exact, Kind, Ranges, Table, binomial};
+use super::table::{Exact, Info, Kind, Ranges, Table, UNNUMBERED, binomial};
 
 /// Elements that a scheme may have.
 pub const MAX_ELEMENTS: usize = 8;
@@ -81,6 +83,9 @@ pub(crate) struct Passed {
     pub(crate) chain: u64,
 }
 
+/// A forward gear whose ratio an earlier one has.
+const AGAIN: u32 = 1 | 1 << 8;
+
 /// The room that a search works in.
 pub(crate) struct Chooser<'a> {
     pub(crate) goal: &'a Goal,
@@ -91,8 +96,15 @@ pub(crate) struct Chooser<'a> {
     chosen: [usize; MAX_ELEMENTS],
     /// Numbers of the subsets of the chosen points, by their size.
     numbers: [Vec<usize>; MAX_MOBILITY + 1],
+    /// How many of the states have each ratio, by its number.
+    held: Vec<u8>,
     /// At most so many states may be no forward gear, and so many no gear.
     most: [u32; 2],
+    /// The states of a whole choice.
+    states: [usize; MAX_STATES],
+    /// Its forward gears by falling ratio: ratio, position; and the longest chain that ends there.
+    falling: [(f64, u8); MAX_STATES],
+    length: [u8; MAX_STATES],
 }
 
 impl<'a> Chooser<'a> {
@@ -102,7 +114,20 @@ impl<'a> Chooser<'a> {
         let total = goal.states();
         let spare = |needed: usize| total.saturating_sub(needed) as u32;
         let most = [spare(goal.forward), spare(goal.forward + goal.reverse)];
-        Self { goal, points, table, exact, passed: Passed::default(), chosen: [0; MAX_ELEMENTS], numbers, most }
+        Self {
+            goal,
+            points,
+            table,
+            exact,
+            passed: Passed::default(),
+            chosen: [0; MAX_ELEMENTS],
+            numbers,
+            held: vec![0; table.numbers],
+            most,
+            states: [0; MAX_STATES],
+            falling: [(0.0, 0); MAX_STATES],
+            length: [0; MAX_STATES],
+        }
     }
 
     /// Calls `visit` with every choice that does what is wanted.
@@ -112,28 +137,55 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    fn add(&mut self, depth: usize, from: usize, cost: Cost, visit: &mut dyn FnMut(&Found<'_>)) {
+    fn add(&mut self, depth: usize, from: usize, waste: u32, visit: &mut dyn FnMut(&Found<'_>)) {
         let closed = self.goal.closed;
         let left = self.goal.elements - depth;
+        let [most, most_bad] = self.most;
         let lengths: [usize; MAX_MOBILITY + 1] = std::array::from_fn(|j| self.numbers[j].len());
         for point in from..(self.points.len() + 1).saturating_sub(left) {
             let base = self.table.choose[closed][point];
-            let costs = &self.table.cost[base..];
-            let with: Cost = self.numbers[closed - 1].iter().fold(cost, |sum, below| sum + costs[*below]);
-            let twice = (with >> 16).saturating_sub(1);
-            if (with & 0xFF) + twice > self.most[0] || (with >> 8 & 0xFF) + twice > self.most[1] {
+            let infos = &self.table.info[base..];
+            let count = |waste: u32, below: &usize| {
+                let info: Info = infos[*below];
+                waste + (info >> 16) + AGAIN * u32::from(self.held[info as usize & 0xFFFF] != 0)
+            };
+            let with = self.numbers[closed - 1].iter().fold(waste, count);
+            if with & 0xFF > most || with >> 8 > most_bad {
                 continue;
             }
             self.chosen[depth] = point;
+            if left == 1 {
+                let before = self.numbers[closed].len();
+                let total = before + self.numbers[closed - 1].len();
+                self.states[..before].copy_from_slice(&self.numbers[closed]);
+                for (state, below) in self.states[before..].iter_mut().zip(&self.numbers[closed - 1]) {
+                    *state = base + below;
+                }
+                self.look(total, visit);
+                continue;
+            }
             for j in (1..=closed).rev() {
                 let base = self.table.choose[j][point];
                 let (below, here) = self.numbers.split_at_mut(j);
                 here[0].extend(below[j - 1][..lengths[j - 1]].iter().map(|b| base + b));
             }
-            if left == 1 {
-                self.look(visit);
-            } else {
+            // New states may have one ratio among themselves.
+            let mut with = waste;
+            for state in &self.numbers[closed][lengths[closed]..] {
+                let info = self.table.info[*state];
+                with += info >> 16;
+                let number = info as usize & 0xFFFF;
+                if number > UNNUMBERED as usize {
+                    with += AGAIN * u32::from(self.held[number] != 0);
+                    self.held[number] += 1;
+                }
+            }
+            if with & 0xFF <= most && with >> 8 <= most_bad {
                 self.add(depth + 1, point + 1, with, visit);
+            }
+            for state in &self.numbers[closed][lengths[closed]..] {
+                let number = self.table.info[*state] as usize & 0xFFFF;
+                self.held[number] = self.held[number].saturating_sub(1);
             }
             for (numbers, length) in self.numbers.iter_mut().zip(lengths) {
                 numbers.truncate(length);
@@ -141,25 +193,61 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// A whole choice.
-    fn look(&mut self, visit: &mut dyn FnMut(&Found<'_>)) {
+    /// A whole choice, with so many states.
+    fn look(&mut self, total: usize, visit: &mut dyn FnMut(&Found<'_>)) {
         let goal = self.goal;
-        let chosen = &self.chosen[..goal.elements];
-        let hardware: u64 = chosen.iter().map(|p| self.points.at(*p).len() as u64).product();
-        self.passed.enough += hardware;
-        let states = &self.numbers[goal.closed];
+        let hardware = || -> u64 {
+            self.chosen[..goal.elements].iter().map(|p| self.points.at(*p).len() as u64).product()
+        };
+        self.passed.enough += hardware();
+        let states = &self.states[..total];
+        let [low, high] = goal.ranges.about;
+        let mut count = 0;
+        for (s, state) in states.iter().enumerate() {
+            if self.table.info[*state] & 0xFFFF == 0 {
+                continue;
+            }
+            let ratio = self.table.ratio[*state];
+            let mut at = count;
+            while at > 0 && self.falling[at - 1].0 < ratio {
+                self.falling[at] = self.falling[at - 1];
+                at -= 1;
+            }
+            self.falling[at] = (ratio, s as u8);
+            count += 1;
+        }
+        // Of two ratios that are nearly equal either may come first; then only the exact look tells.
+        let close = |w: &[(f64, u8)]| !goal.ranges.is_coarse() && w[0].0 < w[1].0 * (1.0 + super::table::NEAR);
+        let unsure = self.falling[..count].windows(2).any(close);
+        let mut longest = 0;
+        for at in 0..count {
+            let (ratio, here) = self.falling[at];
+            let beside = goal.neighbours[usize::from(here)];
+            let mut length = 0;
+            for from in 0..at {
+                let (above, other) = self.falling[from];
+                let is_step = (beside >> other & 1 == 1) & (above >= ratio * low) & (above <= ratio * high);
+                length = if is_step { length.max(self.length[from]) } else { length };
+            }
+            self.length[at] = length + 1;
+            longest = longest.max(length + 1);
+        }
+        if usize::from(longest) < goal.forward && !unsure {
+            return;
+        }
         let mut chain = [0; MAX_STATES];
-        let Some(length) = longest(goal, states, u128::MAX, self.table, self.exact, &mut chain) else { return };
+        let Some(length) = longest_chain(goal, states, u128::MAX, self.table, self.exact, &mut chain) else { return };
+        let hardware = hardware();
         self.passed.chain += hardware;
         if !has_reverse(goal, states, u128::MAX, self.table) {
             return;
         }
-        visit(&Found { points: chosen, states, chain: &chain[..length] });
+        visit(&Found { points: &self.chosen[..goal.elements], states, chain: &chain[..length] });
     }
 }
 
 /// Whether the states in `among` have as many different reverse ratios as are wanted.
-pub(crate) fn has_reverse(goal: &Goal, states: &[usize], among: u128, table: &Table) -> bool {
+fn has_reverse(goal: &Goal, states: &[usize], among: u128, table: &Table) -> bool {
     if goal.reverse == 0 {
         return true;
     }
@@ -179,7 +267,7 @@ pub(crate) fn has_reverse(goal: &Goal, states: &[usize], among: u128, table: &Ta
 
 /// The longest chain of forward gears among some of the states of a choice, if it is as long as is wanted: its length,
 /// and positions of states in `chain`.
-pub(crate) fn longest(
+fn longest_chain(
     goal: &Goal,
     states: &[usize],
     among: u128,
@@ -322,7 +410,7 @@ pub(crate) fn has_spare(goal: &Goal, found: &Found<'_>, table: &Table, exact: &E
     (0..goal.elements).any(|element| {
         let without = goal.masks.iter().enumerate().filter(|(_, m)| *m >> element & 1 == 0);
         let among = without.fold(0, |all, (s, _)| all | 1_u128 << s);
-        longest(goal, found.states, among, table, exact, &mut [0; MAX_STATES]).is_some()
+        longest_chain(goal, found.states, among, table, exact, &mut [0; MAX_STATES]).is_some()
             && has_reverse(goal, found.states, among, table)
     })
 }

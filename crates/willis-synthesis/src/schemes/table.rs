@@ -19,6 +19,9 @@ use super::residue;
 /// Numbers that differ by less, as a fraction, may be equal.
 pub(crate) const NEAR: f64 = 1e-8;
 
+/// Room for numbers of ratios. Where it is used up, further ratios count as different: less is excluded, nothing wrong.
+const SLOTS: usize = 1 << 13;
+
 /// `C(n, k)` for small numbers.
 pub(crate) fn binomial(n: usize, k: usize) -> usize {
     if k > n { 0 } else { (0..k).fold(1, |c, j| c * (n - j) / (j + 1)) }
@@ -89,15 +92,15 @@ pub(crate) enum Kind {
     Bad,
 }
 
-/// How a state counts against what a choice of elements may waste: states that are no forward gear in the lowest eight
-/// bits, states that are no gear at all above them, forward gears of ratio 1 above these.
-pub(crate) type Cost = u32;
+/// What the search over choices knows of a state: in the lowest 16 bits the number of its ratio if it is a forward gear,
+/// else 0; above them, eight bits each, whether it is no forward gear and whether it is no gear at all.
+pub(crate) type Info = u32;
+/// A forward gear whose ratio has no number of its own.
+pub(crate) const UNNUMBERED: Info = 1;
 /// A reverse gear.
-pub(crate) const REVERSE: Cost = 1;
+const REVERSE: Info = 1 << 16;
 /// No gear.
-pub(crate) const BAD: Cost = 1 | 1 << 8;
-/// A forward gear of ratio 1.
-pub(crate) const DIRECT: Cost = 1 << 16;
+const BAD: Info = 1 << 16 | 1 << 24;
 
 /// What the ratios of a wish are compared with.
 #[derive(Clone, Debug)]
@@ -108,12 +111,22 @@ pub(crate) struct Ranges {
     pub(crate) step: Window,
     /// Two ratios in a chain differ by so much that two that are nearly equal are never both in it.
     coarse: bool,
+    /// The window of steps, a little too wide.
+    pub(crate) about: [f64; 2],
 }
 
 impl Ranges {
     pub(crate) fn new(forward: Window, reverse: Option<Window>, step: Window) -> Self {
         let coarse = step.min > 1.0 + 1e-6;
-        Self { forward, reverse, step, coarse }
+        let about = [step.min.max(1.0) * (1.0 - 2.0 * NEAR), step.max * (1.0 + 2.0 * NEAR)];
+        Self { forward, reverse, step, coarse, about }
+    }
+}
+
+impl Ranges {
+    /// Whether two ratios that are nearly equal are never both in a chain.
+    pub(crate) fn is_coarse(&self) -> bool {
+        self.coarse
     }
 }
 
@@ -153,16 +166,25 @@ pub(crate) struct Table {
     pub(crate) choose: Vec<Vec<usize>>,
     /// Ratio of every state; what it is where the state is bad is left open.
     pub(crate) ratio: Vec<f64>,
-    /// What every state costs.
-    pub(crate) cost: Vec<Cost>,
+    /// What the search knows of every state.
+    pub(crate) info: Vec<Info>,
+    /// Numbers of ratios are below this.
+    pub(crate) numbers: usize,
+    /// The numbers of ratios, found by their leading digits.
+    slots: Vec<Slot>,
+    /// Slots of an earlier layout are empty.
+    round: u32,
 }
+
+/// A place for a ratio: when it was filled, the leading digits, the first state, the number.
+type Slot = (u32, u64, u32, u16);
 
 impl Table {
     /// A table for layouts of one mobility.
     pub(crate) fn new(mobility: usize) -> Self {
         let choose =
             (0..=MAX_MOBILITY).map(|j| (0..=2 * super::points::MAX_POINTS).map(|c| binomial(c, j)).collect()).collect();
-        Self { steps: steps(mobility), choose, ..Self::default() }
+        Self { steps: steps(mobility), choose, slots: vec![(0, 0, 0, 0); SLOTS], ..Self::default() }
     }
 
     /// The points of a state.
@@ -215,8 +237,10 @@ impl Table {
         let [top, bottom] = [0, 1].map(|end| &self.forms[end][closed][0][..size]);
         self.ratio.clear();
         self.ratio.extend(top.iter().zip(bottom).map(|(t, b)| t / b * points.scale));
-        self.cost.clear();
-        self.cost.resize(size, BAD);
+        self.info.clear();
+        self.info.resize(size, BAD);
+        self.numbers = 1 + UNNUMBERED as usize;
+        self.round += 1;
         let scale = points.scale.abs();
         for state in 0..size {
             let (t, b, mut ratio) = (top[state].abs(), bottom[state].abs(), self.ratio[state]);
@@ -249,21 +273,46 @@ impl Table {
             if !inside {
                 continue;
             }
-            self.cost[state] = if ratio < 0.0 {
-                REVERSE
-            } else if (ratio - 1.0).abs() > NEAR {
-                0
-            } else if ranges.coarse || exact.is_one(&self.members(state, closed)[..closed]) {
-                DIRECT
-            } else {
-                0
-            };
+            self.info[state] = if ratio < 0.0 { REVERSE } else { UNNUMBERED };
         }
+        for state in 0..size {
+            if self.info[state] == UNNUMBERED {
+                self.info[state] = self.number(state, closed, ranges.coarse, exact);
+            }
+        }
+    }
+
+    /// The number of a forward ratio. Two states have one number only if a chain never has both: their ratios are
+    /// equal, or so near that there is no step between them.
+    fn number(&mut self, state: usize, closed: usize, coarse: bool, exact: &Exact<'_>) -> Info {
+        const DROPPED: u32 = 28;
+        // 24 leading bits, rounded: differences of 1e-7 and less.
+        let digits = (self.ratio[state].to_bits() + (1 << (DROPPED - 1))) >> DROPPED;
+        let mut at = (digits.wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 51) as usize;
+        loop {
+            let (round, known, first, number) = self.slots[at];
+            if round != self.round {
+                break;
+            }
+            if known == digits {
+                let [one, other] = [first as usize, state].map(|s| self.members(s, closed));
+                let is_same = coarse || exact.is_same(&one[..closed], &other[..closed]);
+                return if is_same { Info::from(number) } else { UNNUMBERED };
+            }
+            at = (at + 1) % SLOTS;
+        }
+        if self.numbers >= SLOTS / 2 {
+            return UNNUMBERED;
+        }
+        let fresh = self.numbers as u16;
+        self.slots[at] = (self.round, digits, state as u32, fresh);
+        self.numbers += 1;
+        Info::from(fresh)
     }
 
     /// What a state is good for.
     pub(crate) fn kind(&self, state: usize) -> Kind {
-        match self.cost[state] {
+        match self.info[state] {
             REVERSE => Kind::Reverse,
             BAD => Kind::Bad,
             _ => Kind::Forward,
@@ -324,9 +373,9 @@ impl Exact<'_> {
         Some(self.rational(state)?.to_f64())
     }
 
-    fn is_one(&self, state: &[usize]) -> bool {
-        let [top, bottom] = self.classes(state);
-        top == bottom
+    fn is_same(&self, one: &[usize], other: &[usize]) -> bool {
+        let ([a, b], [c, d]) = (self.classes(one), self.classes(other));
+        residue::times(a, d) == residue::times(b, c)
     }
 
     fn within(&self, state: &[usize], window: &Window, negative: bool) -> bool {
