@@ -86,6 +86,57 @@ pub(crate) struct Passed {
 /// A forward gear whose ratio an earlier one has.
 const AGAIN: u32 = 1 | 1 << 8;
 
+/// For each point, as a bit of every word, how many states it would add that are wasted: a number of so many binary
+/// digits.
+#[derive(Clone, Copy)]
+struct Counter<const DIGITS: usize>([u64; DIGITS]);
+
+impl<const DIGITS: usize> Counter<DIGITS> {
+    /// Counts one more at these points.
+    fn add(&mut self, points: u64) {
+        let mut carry = points;
+        for digit in &mut self.0 {
+            (*digit, carry) = (*digit ^ carry, *digit & carry);
+        }
+    }
+
+    /// The points at which the number is not above this.
+    fn at_most(&self, most: u32) -> u64 {
+        if most >> DIGITS != 0 {
+            return u64::MAX;
+        }
+        // From the highest digit on: equal so far, or already below.
+        let (mut equal, mut below) = (u64::MAX, 0);
+        for (k, digit) in self.0.iter().enumerate().rev() {
+            let wanted = 0_u64.wrapping_sub(u64::from(most >> k & 1));
+            below |= equal & !digit & wanted;
+            equal &= !(digit ^ wanted);
+        }
+        equal | below
+    }
+}
+
+/// What a further point would add.
+#[derive(Clone, Copy)]
+struct Counters<const DIGITS: usize> {
+    /// States that are no forward gear.
+    no_forward: Counter<DIGITS>,
+    /// States that are no gear.
+    no_gear: Counter<DIGITS>,
+    /// The points that add a reverse gear.
+    reverse: u64,
+}
+
+impl<const DIGITS: usize> Counters<DIGITS> {
+    const NONE: Self = Self { no_forward: Counter([0; DIGITS]), no_gear: Counter([0; DIGITS]), reverse: 0 };
+
+    fn add(&mut self, [no_forward, no_gear]: [u64; 2]) {
+        self.no_forward.add(no_forward);
+        self.no_gear.add(no_gear);
+        self.reverse |= no_forward & !no_gear;
+    }
+}
+
 /// The room that a search works in.
 pub(crate) struct Chooser<'a> {
     pub(crate) goal: &'a Goal,
@@ -133,16 +184,50 @@ impl<'a> Chooser<'a> {
     /// Calls `visit` with every choice that does what is wanted.
     pub(crate) fn run(&mut self, visit: &mut dyn FnMut(&Found<'_>)) {
         if self.goal.forward + self.goal.reverse <= self.goal.states() {
-            self.add(0, 0, 0, visit);
+            // A point adds at most `C(n-1, M-2)` states.
+            if binomial(self.goal.elements - 1, self.goal.closed - 1) < 8 {
+                self.start::<3>(visit);
+            } else {
+                self.start::<6>(visit);
+            }
         }
     }
 
-    fn add(&mut self, depth: usize, from: usize, waste: u32, visit: &mut dyn FnMut(&Found<'_>)) {
+    fn start<const DIGITS: usize>(&mut self, visit: &mut dyn FnMut(&Found<'_>)) {
+        let mut counters = Counters::<DIGITS>::NONE;
+        if self.goal.closed == 1 {
+            counters.add(self.table.wasted[0]);
+        }
+        let all = u64::MAX.checked_shr(64 - self.points.len() as u32).unwrap_or(0);
+        self.add(0, self.open(0, self.goal.elements, &counters) & all, 0, &counters, visit);
+    }
+
+    /// The points that can be added where so much is wasted already and so many are left to be chosen.
+    fn open<const DIGITS: usize>(&self, waste: u32, left: usize, counters: &Counters<DIGITS>) -> u64 {
+        let [most, most_bad] = self.most;
+        let (no_forward, no_gear) = (waste & 0xFF, waste >> 8);
+        let open = counters.no_forward.at_most(most - no_forward) & counters.no_gear.at_most(most_bad - no_gear);
+        // Where no state is a reverse gear yet, the last point must bring one.
+        let lacks_reverse = left == 1 && self.goal.reverse > 0 && self.goal.closed > 1 && no_forward == no_gear;
+        if lacks_reverse { open & counters.reverse } else { open }
+    }
+
+    /// Adds one of the `open` points, which come after those that are chosen. `waste` is what the chosen ones waste:
+    /// states that are no forward gear in the lowest eight bits, states that are no gear above them.
+    fn add<const DIGITS: usize>(
+        &mut self,
+        depth: usize,
+        mut open: u64,
+        waste: u32,
+        counters: &Counters<DIGITS>,
+        visit: &mut dyn FnMut(&Found<'_>),
+    ) {
         let closed = self.goal.closed;
         let left = self.goal.elements - depth;
         let [most, most_bad] = self.most;
-        let lengths: [usize; MAX_MOBILITY + 1] = std::array::from_fn(|j| self.numbers[j].len());
-        for point in from..(self.points.len() + 1).saturating_sub(left) {
+        while open.count_ones() as usize >= left {
+            let point = open.trailing_zeros() as usize;
+            open &= open - 1;
             let base = self.table.choose[closed][point];
             let infos = &self.table.info[base..];
             let count = |waste: u32, below: &usize| {
@@ -164,24 +249,38 @@ impl<'a> Chooser<'a> {
                 self.look(total, visit);
                 continue;
             }
+            let mut counters = *counters;
+            if closed > 1 {
+                let base = self.table.choose[closed - 1][point];
+                self.numbers[closed - 2].iter().for_each(|below| counters.add(self.table.wasted[base + below]));
+            }
+            // What is open can only become less.
+            let mut next = open & self.open(with, left - 1, &counters);
+            if (next.count_ones() as usize) < left - 1 {
+                continue;
+            }
+            let lengths: [usize; MAX_MOBILITY + 1] = std::array::from_fn(|j| self.numbers[j].len());
             for j in (1..=closed).rev() {
                 let base = self.table.choose[j][point];
                 let (below, here) = self.numbers.split_at_mut(j);
                 here[0].extend(below[j - 1][..lengths[j - 1]].iter().map(|b| base + b));
             }
             // New states may have one ratio among themselves.
-            let mut with = waste;
+            let mut exactly = waste;
             for state in &self.numbers[closed][lengths[closed]..] {
                 let info = self.table.info[*state];
-                with += info >> 16;
+                exactly += info >> 16;
                 let number = info as usize & 0xFFFF;
                 if number > UNNUMBERED as usize {
-                    with += AGAIN * u32::from(self.held[number] != 0);
+                    exactly += AGAIN * u32::from(self.held[number] != 0);
                     self.held[number] += 1;
                 }
             }
-            if with & 0xFF <= most && with >> 8 <= most_bad {
-                self.add(depth + 1, point + 1, with, visit);
+            if exactly & 0xFF <= most && exactly >> 8 <= most_bad {
+                if exactly != with {
+                    next &= self.open(exactly, left - 1, &counters);
+                }
+                self.add(depth + 1, next, exactly, &counters, visit);
             }
             for state in &self.numbers[closed][lengths[closed]..] {
                 let number = self.table.info[*state] as usize & 0xFFFF;
@@ -196,9 +295,8 @@ impl<'a> Chooser<'a> {
     /// A whole choice, with so many states.
     fn look(&mut self, total: usize, visit: &mut dyn FnMut(&Found<'_>)) {
         let goal = self.goal;
-        let hardware = || -> u64 {
-            self.chosen[..goal.elements].iter().map(|p| self.points.at(*p).len() as u64).product()
-        };
+        let hardware =
+            || -> u64 { self.chosen[..goal.elements].iter().map(|p| self.points.at(*p).len() as u64).product() };
         self.passed.enough += hardware();
         let states = &self.states[..total];
         let [low, high] = goal.ranges.about;

@@ -272,8 +272,14 @@ impl Search {
         parts.dedup();
         work.begin("parts", parts.len() as u64);
         let whole = Mutex::new(std::mem::take(into));
+        // Every thread that comes takes a room or makes one.
+        let rooms: Mutex<Vec<Room>> = Mutex::default();
         work.run(parts.len(), &|k| {
-            let Some(own) = self.part(parts[k], work) else { return };
+            let kept = rooms.lock().unwrap_or_else(std::sync::PoisonError::into_inner).pop();
+            let mut room = kept.unwrap_or_else(|| self.room());
+            let own = self.part(parts[k], &mut room, work);
+            rooms.lock().unwrap_or_else(std::sync::PoisonError::into_inner).push(room);
+            let Some(own) = own else { return };
             let mut whole = whole.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             whole.done.push(parts[k]);
             whole.tally.add(&own.tally);
@@ -287,25 +293,28 @@ impl Search {
         into.wish = self.name();
     }
 
+    fn room(&self) -> Room {
+        Room { points: Points::default(), table: Table::new(self.wish.closed + 1) }
+    }
+
     fn keep_best(&self, rows: &mut Vec<Row>) {
         rows.sort_by(Row::cmp);
         rows.truncate(self.wish.top);
     }
 
     /// One part; none where the work was cancelled within it.
-    fn part(&self, part: usize, work: &dyn Work) -> Option<Harvest> {
-        let mut room = Room { points: Points::default(), table: Table::new(self.wish.closed + 1) };
+    fn part(&self, part: usize, room: &mut Room, work: &dyn Work) -> Option<Harvest> {
         let mut harvest = Harvest::default();
         // Parts are not all as long as the distance of samples: where the first lies in them differs.
         let mut number = part.wrapping_mul(7919) % self.wish.sample;
         if let Some(layout) = &self.wish.layout {
-            self.layout(layout, &mut room, &mut harvest);
+            self.layout(layout, room, &mut harvest);
             return Some(harvest);
         }
         let whole = self.space.walk(&self.parts[part], &mut |layout| {
             number += 1;
             if number % self.wish.sample == 0 {
-                self.layout(layout, &mut room, &mut harvest);
+                self.layout(layout, room, &mut harvest);
             }
             number % 64 != 0 || !work.cancelled()
         });
@@ -320,9 +329,8 @@ impl Search {
         if self.wish.layout.is_some_and(|own| own != *layout) {
             return false;
         }
-        let mut room = Room { points: Points::default(), table: Table::new(wish.closed + 1) };
         let mut harvest = Harvest::default();
-        search.layout(layout, &mut room, &mut harvest);
+        search.layout(layout, &mut search.room(), &mut harvest);
         harvest.rows.iter().any(|row| row.elements == elements)
     }
 

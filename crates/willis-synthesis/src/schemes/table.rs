@@ -168,6 +168,9 @@ pub(crate) struct Table {
     pub(crate) ratio: Vec<f64>,
     /// What the search knows of every state.
     pub(crate) info: Vec<Info>,
+    /// For every set of `M - 2` points, by its number: the points, as bits, with which it is no forward gear, and with
+    /// which it is no gear.
+    pub(crate) wasted: Vec<[u64; 2]>,
     /// Numbers of ratios are below this.
     pub(crate) numbers: usize,
     /// The numbers of ratios, found by their leading digits.
@@ -279,6 +282,38 @@ impl Table {
             if self.info[state] == UNNUMBERED {
                 self.info[state] = self.number(state, closed, ranges.coarse, exact);
             }
+        }
+        self.waste(closed, count);
+    }
+
+    /// The sets of points that are no gear with another point.
+    fn waste(&mut self, closed: usize, count: usize) {
+        self.wasted.clear();
+        self.wasted.resize(self.choose[closed - 1][count], [0; 2]);
+        // The points of each state, in the order of the states.
+        let mut members: [usize; MAX_MOBILITY] = std::array::from_fn(|j| j);
+        for info in &self.info {
+            if info & 0xFFFF == 0 {
+                let is_bad = (info >> 24) as u64;
+                // The number of the state without one of its points: later points move down by one place.
+                let mut without: usize = (1..closed).map(|j| self.choose[j][members[j]]).sum();
+                for j in 0..closed {
+                    let bit = 1_u64 << members[j];
+                    let masks = &mut self.wasted[without];
+                    masks[0] |= bit;
+                    masks[1] |= bit * is_bad;
+                    if j + 1 < closed {
+                        without += self.choose[j + 1][members[j]];
+                        without -= self.choose[j + 1][members[j + 1]];
+                    }
+                }
+            }
+            let mut at = 0;
+            while at + 1 < closed && members[at] + 1 == members[at + 1] {
+                members[at] = at;
+                at += 1;
+            }
+            members[at] += 1;
         }
     }
 
