@@ -18,6 +18,7 @@
 //! crossing.
 
 mod choose;
+mod hybrid;
 mod known;
 mod layout;
 mod measure;
@@ -33,6 +34,7 @@ mod train_file;
 mod wish;
 
 pub use choose::MAX_ELEMENTS;
+pub use hybrid::{HybridDesign, HybridMode, HybridWish, Hybrids, ModeKind, hybrids};
 pub use known::{KNOWN, Known, Rediscovered};
 pub use layout::{GROUND, INPUT, Layout, Layouts, MAX_SETS, NoLayout, OUTPUT, Prefix, count_layouts};
 pub use report::{Completeness, FoundSchemes, Relaxation, SchemeSpace, Schemes, Stage};

@@ -235,19 +235,27 @@ pub struct Layouts {
     members: usize,
     /// Shafts with the housing.
     shafts: u8,
+    /// Shafts that have a name of their own, the first ones.
+    terminals: u8,
 }
 
 impl Layouts {
     /// All with so many sets, up to five, and so many shafts besides the housing.
     pub fn new(sets: usize, shafts: usize) -> Self {
-        Self { members: 3 * sets.min(MAX_SETS), shafts: (shafts.min(MAX_SHAFTS) + 1) as u8 }
+        Self::with_terminals(sets, shafts, 3)
+    }
+
+    /// The same where so many shafts, the housing included, have names of their own and are numbered first.
+    pub(crate) fn with_terminals(sets: usize, shafts: usize, terminals: u8) -> Self {
+        let shafts = (shafts.min(MAX_SHAFTS - 1) + 1) as u8;
+        Self { members: 3 * sets.min(MAX_SETS), shafts, terminals }
     }
 
     /// The space in stretches, each the layouts with the same shafts of the first `given` members.
     pub fn prefixes(&self, given: usize) -> Vec<Prefix> {
         let mut all = vec![];
         let given = given.min(self.members);
-        self.descend(&mut Prefix::EMPTY.clone(), given, &mut |p| {
+        self.descend(&mut Prefix { next: self.terminals, ..Prefix::EMPTY }, given, &mut |p| {
             all.push(*p);
             true
         });

@@ -51,7 +51,8 @@ fn scaled(vector: &[i128]) -> Option<([f64; MAX_MOBILITY], i128)> {
     })
 }
 
-fn classes(vector: &[i128]) -> [u64; MAX_MOBILITY] {
+/// A vector modulo the prime.
+pub(crate) fn direction(vector: &[i128]) -> [u64; MAX_MOBILITY] {
     let mut all = [0; MAX_MOBILITY];
     for (c, x) in all.iter_mut().zip(vector) {
         *c = residue::of(*x);
@@ -94,9 +95,9 @@ impl Points {
                 let near = |q: usize| (0..self.mobility).all(|i| (self.place[i][q] - place[i]).abs() < NEAR);
                 let class = std::cell::OnceCell::new();
                 let at =
-                    (0..points).find(|q| near(*q) && parallel(&self.class[*q], class.get_or_init(|| classes(&vector))));
+                    (0..points).find(|q| near(*q) && parallel(&self.class[*q], class.get_or_init(|| direction(&vector))));
                 let at = at.unwrap_or_else(|| {
-                    self.class.push(class.into_inner().unwrap_or_else(|| classes(&vector)));
+                    self.class.push(class.into_inner().unwrap_or_else(|| direction(&vector)));
                     for (all, p) in self.place.iter_mut().zip(place).take(self.mobility) {
                         all.push(p);
                     }
@@ -127,7 +128,7 @@ impl Points {
         for end in 0..2 {
             let vector = motion.shaft(end as u8);
             let Some((place, scale)) = scaled(vector) else { return false };
-            self.ends[end] = (place, classes(vector));
+            self.ends[end] = (place, direction(vector));
             scales[end] = scale;
         }
         self.scale = scales[0] as f64 / scales[1] as f64;
