@@ -322,9 +322,8 @@ pub fn hybrids(wish: &HybridWish, work: &dyn Work) -> Result<Hybrids, Diagnostic
     let places = shafts * (shafts + 1) / 2 - 1;
     let choices = binomial(places, wish.clutches);
     let parts = space(wish).prefixes(3 * (wish.sets.len() - 1));
-    let layouts: u64 = super::layout::count_layouts(wish.sets.len())
-        .get(&shafts)
-        .map_or(0, |n| u64::try_from(*n).unwrap_or(u64::MAX));
+    let layouts: u64 =
+        super::layout::count_layouts(wish.sets.len()).get(&shafts).map_or(0, |n| u64::try_from(*n).unwrap_or(u64::MAX));
     work.afford(&Effort::new("layouts", layouts, 1e-6 * (100 + choices) as f64))?;
     work.begin("parts", parts.len() as u64);
     let done = map(work, parts.len(), |p| {
@@ -475,8 +474,7 @@ fn places(chosen: &[usize], points: &Points, members: &[usize]) -> Vec<Vec<[u8; 
         all = all.iter().flat_map(|set| here.iter().map(|e| set.iter().copied().chain([*e]).collect())).collect();
     }
     all.retain(|set| {
-        (5..members.len())
-            .all(|s| members[s] + set.iter().flatten().filter(|e| usize::from(**e) == s).count() >= 2)
+        (5..members.len()).all(|s| members[s] + set.iter().flatten().filter(|e| usize::from(**e) == s).count() >= 2)
     });
     all
 }

@@ -94,8 +94,8 @@ impl Points {
                 let Some((place, _)) = scaled(&vector[..self.mobility]) else { continue };
                 let near = |q: usize| (0..self.mobility).all(|i| (self.place[i][q] - place[i]).abs() < NEAR);
                 let class = std::cell::OnceCell::new();
-                let at =
-                    (0..points).find(|q| near(*q) && parallel(&self.class[*q], class.get_or_init(|| direction(&vector))));
+                let at = (0..points)
+                    .find(|q| near(*q) && parallel(&self.class[*q], class.get_or_init(|| direction(&vector))));
                 let at = at.unwrap_or_else(|| {
                     self.class.push(class.into_inner().unwrap_or_else(|| direction(&vector)));
                     for (all, p) in self.place.iter_mut().zip(place).take(self.mobility) {

@@ -544,3 +544,179 @@ fn orders(ratios: &[Rational]) -> Vec<Vec<usize>> {
     all.retain(|order| !order.is_sorted());
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use willis::work::Serial;
+
+    use super::super::scheme::{State, chain, reverse};
+    use super::*;
+
+    /// Rank by elimination over rational numbers.
+    fn rank(mut rows: Vec<Vec<Rational>>) -> usize {
+        let mut rank = 0;
+        for column in 0..rows[0].len() {
+            let Some(found) = (rank..rows.len()).find(|r| !rows[*r][column].is_zero()) else { continue };
+            rows.swap(rank, found);
+            let pivot = rows[rank].clone();
+            for row in &mut rows[rank + 1..] {
+                let factor = &row[column] / &pivot[column];
+                for (x, p) in row.iter_mut().zip(&pivot) {
+                    *x = &*x - &(&factor * p);
+                }
+            }
+            rank += 1;
+        }
+        rank
+    }
+
+    /// The schemes of one layout, every choice of elements tested from the equations of the sets.
+    fn every_choice(wish: &Wish, layout: &Layout) -> Vec<Vec<[u8; 2]>> {
+        let ratios = wish.ratios();
+        let shafts = layout.shafts();
+        let row = |entries: &[(u8, Rational)]| {
+            let mut row = vec![Rational::ZERO; shafts];
+            entries.iter().filter(|(s, _)| *s != GROUND).for_each(|(s, x)| row[usize::from(*s)] = x.clone());
+            row
+        };
+        let sets: Vec<Vec<Rational>> = layout
+            .blocks()
+            .chunks(3)
+            .zip(&ratios)
+            .map(|(b, k)| row(&[(b[0], Rational::ONE), (b[1], k.clone()), (b[2], -(k + &Rational::ONE))]))
+            .collect();
+        let with = |elements: &[[u8; 2]]| {
+            let more = elements.iter().map(|[x, y]| row(&[(*x, Rational::ONE), (*y, Rational::from(-1))]));
+            rank(sets.iter().cloned().chain(more).collect())
+        };
+        let free = with(&[]);
+        if free < ratios.len() {
+            return vec![];
+        }
+        let pairs = (0..shafts as u8).flat_map(|x| (x + 1..shafts as u8).map(move |y| [x, y]));
+        let pairs: Vec<[u8; 2]> = pairs.filter(|p| may_join(p[0], p[1]) && with(&[*p]) > free).collect();
+        let mut same = vec![vec![false; pairs.len()]; pairs.len()];
+        let mut speeds = BTreeMap::new();
+        for i in 0..pairs.len() {
+            for j in i + 1..pairs.len() {
+                same[i][j] = with(&[pairs[i], pairs[j]]) == free + 1;
+                speeds.insert([i, j], motion::speeds(layout, &ratios, &[pairs[i], pairs[j]]));
+            }
+        }
+        let mut found = vec![];
+        for bits in (0..1_u32 << pairs.len()).filter(|b| b.count_ones() as usize == wish.elements) {
+            let own: Vec<usize> = (0..pairs.len()).filter(|e| bits >> e & 1 == 1).collect();
+            let pair = |k: usize, l: usize| [own[k], own[l]];
+            let twos: Vec<[usize; 2]> = (0..own.len()).flat_map(|l| (0..l).map(move |k| [k, l])).collect();
+            if twos.iter().any(|[k, l]| same[own[*k]][own[*l]]) {
+                continue;
+            }
+            let mut ends = vec![0; shafts];
+            layout.blocks().iter().for_each(|b| ends[usize::from(*b)] += 1);
+            for end in [INPUT, OUTPUT] {
+                let own = &mut ends[usize::from(end)];
+                *own += usize::from(*own > 0);
+            }
+            own.iter().for_each(|e| pairs[*e].iter().for_each(|s| ends[usize::from(*s)] += 1));
+            if (0..shafts).any(|s| s != usize::from(GROUND) && ends[s] < 2) {
+                continue;
+            }
+            let states: Vec<State> = twos
+                .iter()
+                .filter_map(|[k, l]| {
+                    let speeds = speeds[&pair(*k, *l)].clone()?;
+                    Some(State { mask: 1 << k | 1 << l, ratio: speeds[1].recip(), speeds })
+                })
+                .collect();
+            if chain(wish, &states).len() >= wish.forward && reverse(wish, &states).len() >= wish.reverse {
+                found.push(own.iter().map(|e| pairs[*e]).collect());
+            }
+        }
+        found.sort();
+        found
+    }
+
+    fn pruned(wish: &Wish, layout: &Layout) -> Vec<Vec<[u8; 2]>> {
+        let search = Search::new(&Wish { layout: Some(*layout), top: usize::MAX, ..wish.clone() }).unwrap();
+        let mut harvest = Harvest::default();
+        search.harvest(&Serial, 0..search.parts(), &mut harvest);
+        assert_eq!(harvest.rows.len() as u64, harvest.tally.schemes);
+        harvest.rows.into_iter().map(|row| row.elements).collect()
+    }
+
+    /// The second way: no points, no pruning, no floating point. Tooth ratios of small numbers and windows that end
+    /// where ratios lie, so that ends are touched and ratios are equal.
+    #[test]
+    fn the_pruned_search_finds_what_testing_everything_finds() {
+        let cases = [
+            (["62/26", "74/42"], [4, 2, 3], ["1/2..5", "1.15..2.2", "1.2..5"], false),
+            (["2", "3"], [4, 2, 3], ["1/3..4", "4/3..2", "2..4"], false),
+            (["2", "3"], [4, 2, 3], ["..4", "..2", ".."], false),
+            (["2", "3"], [4, 2, 3], ["1/3..", "..", "2.."], true),
+        ];
+        let mut touched = 0;
+        for (n, (sets, [elements, closed, forward], ranges, progressive)) in cases.into_iter().enumerate() {
+            let mut wish = Wish { progressive, minimal: false, ..Wish::new(&sets, elements, closed, forward).unwrap() };
+            [wish.forward_range, wish.step, wish.reverse_range] = ranges.map(|r| r.parse().unwrap());
+            let space = Layouts::new(2, 5);
+            let mut number = 0;
+            for prefix in space.prefixes(0) {
+                space.walk(&prefix, &mut |layout| {
+                    number += 1;
+                    if number % 7 == n {
+                        let found = pruned(&wish, layout);
+                        assert_eq!(found, every_choice(&wish, layout), "{layout} for case {n}");
+                        touched += found.len();
+                    }
+                    true
+                });
+            }
+        }
+        assert!(touched > 100, "{touched}");
+    }
+
+    #[test]
+    fn alike_sets_are_exchanged_without_losing_a_scheme() {
+        // The same space with one ratio twice: every layout is there as it is and exchanged.
+        let mut wish = Wish { top: usize::MAX, ..Wish::new(&["2", "2"], 4, 2, 3).unwrap() };
+        [wish.forward_range, wish.step] = ["1/3..4", "1.2..2.5"].map(|r| r.parse().unwrap());
+        let mut once = Harvest::default();
+        let search = Search::new(&wish).unwrap();
+        search.harvest(&Serial, 0..search.parts(), &mut once);
+        let mut all = std::collections::BTreeSet::new();
+        for row in &once.rows {
+            let own = (row.layout, row.elements.clone());
+            let (layout, renamed) = row.layout.reordered(&[1, 0]);
+            let mut elements: Vec<[u8; 2]> = row.elements.iter().map(|e| e.map(|s| renamed[usize::from(s)])).collect();
+            elements.iter_mut().for_each(|e| e.sort_unstable());
+            elements.sort_unstable();
+            assert!(own <= (layout, elements.clone()));
+            assert!(all.insert(own.clone()));
+            assert!((layout, elements.clone()) == own || all.insert((layout, elements)));
+        }
+        let mut plain = search.clone();
+        plain.orders.clear();
+        let mut every = Harvest::default();
+        plain.harvest(&Serial, 0..plain.parts(), &mut every);
+        assert_eq!(every.tally.schemes, all.len() as u64);
+        assert!(every.rows.iter().all(|row| all.contains(&(row.layout, row.elements.clone()))));
+    }
+
+    #[test]
+    fn torques_and_speeds_agree_with_those_of_rational_numbers() {
+        let ratios: Vec<Rational> = ["96/48", "96/48", "111/69", "85/23"].map(|t| t.parse().unwrap()).into();
+        let layout: Layout = "345360678751".parse().unwrap();
+        let motion = Motion::of(&layout, &motion::teeth(&ratios).unwrap()).unwrap();
+        for closed in [[[2, 3], [2, 4], [0, 7]], [[2, 4], [1, 8], [6, 7]], [[2, 3], [2, 4], [1, 8]]] {
+            let speeds = motion::speeds(&layout, &ratios, &closed).unwrap();
+            let torques = measure::torques(&layout, &ratios, &closed).unwrap();
+            // Power in and power out are equal.
+            assert_eq!(&torques[0] * &speeds[1], Rational::from(-1));
+            let most = |all: &[Rational]| all.iter().map(|x| x.to_f64().abs()).fold(0.0, f64::max);
+            let [speed, torque] = measure::extremes(&motion, &closed).unwrap();
+            assert!((speed - most(&speeds)).abs() < 1e-12 && (torque - most(&torques[1..])).abs() < 1e-12);
+        }
+    }
+}
