@@ -313,10 +313,10 @@ impl Search {
         }
         let whole = self.space.walk(&self.parts[part], &mut |layout| {
             number += 1;
-            if number % self.wish.sample == 0 {
+            if number.is_multiple_of(self.wish.sample) {
                 self.layout(layout, room, &mut harvest);
             }
-            number % 64 != 0 || !work.cancelled()
+            !number.is_multiple_of(64) || !work.cancelled()
         });
         whole.then_some(harvest)
     }
@@ -416,7 +416,7 @@ impl Search {
         points: &Points,
         attachments: &[u8; MAX_SHAFTS],
         shafts: usize,
-        visit: &mut dyn FnMut(&[[u8; 2]], &[[u8; 2]]),
+        visit: &mut Visit<'_>,
     ) {
         let count = found.points.len();
         let mut digits = [0; super::choose::MAX_ELEMENTS];
@@ -501,6 +501,9 @@ impl Search {
         })
     }
 }
+
+/// What is called with elements in the order of their points, and with the same, sorted.
+type Visit<'a> = dyn FnMut(&[[u8; 2]], &[[u8; 2]]) + 'a;
 
 /// What one thread works in.
 struct Room {
