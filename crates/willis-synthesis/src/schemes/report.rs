@@ -1,0 +1,297 @@
+//! All schemes as an answer.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use willis::contract::{Contract, Format};
+use willis::diagnostic::Diagnostics;
+use willis::work::Work;
+
+use super::known::{Known, Rediscovered};
+use super::scheme::Scheme;
+use super::search::{Harvest, Search};
+use super::wish::{Bounds, Wish};
+
+/// The space that was searched.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SchemeSpace {
+    /// Sets of the train.
+    pub sets: usize,
+    /// Shafts besides the housing.
+    pub shafts: usize,
+    /// Layouts of the space, whether or not they were reached.
+    pub layouts: u64,
+    /// Layouts that were examined.
+    pub examined: u64,
+    /// Choices of elements in these layouts, no two elements kinematically the same: each was examined, or excluded by
+    /// the number of its states that can be gears.
+    pub choices: u64,
+}
+
+/// How much of the space the answer covers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Completeness {
+    /// Whether it is all of it.
+    pub complete: bool,
+    /// Parts of the work.
+    pub parts: usize,
+    /// Parts that are done.
+    pub done: usize,
+    /// The share of the parts that is done.
+    pub share: f64,
+    /// One of so many layouts was examined.
+    pub sample: usize,
+    /// All of this in words.
+    pub statement: String,
+}
+
+/// How many choices of elements are left after a rule.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Stage {
+    /// The rule: `choices`, `states`, `chain`, `reverse`, `attached`, `minimal`, `limits`, `planar`.
+    pub rule: String,
+    /// What it asks, in words.
+    pub about: String,
+    /// What is left.
+    pub left: u64,
+}
+
+/// How many schemes there are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct FoundSchemes {
+    /// Layouts that have a scheme.
+    pub layouts: u64,
+    /// Schemes.
+    pub schemes: u64,
+    /// Schemes that differ in more than the place of an element that does the same to all speeds.
+    pub classes: u64,
+    /// Schemes by their number of brakes.
+    pub by_brakes: BTreeMap<usize, u64>,
+}
+
+/// What there would be if one rule gave way.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Relaxation {
+    /// What gives way, in words.
+    pub change: String,
+    /// How many schemes there are then.
+    pub schemes: u64,
+}
+
+/// All shift schemes that do what is wanted. Serialised it is the contract `willis-schemes-1`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Schemes {
+    /// `willis-schemes-1`.
+    pub format: Format<Self>,
+    /// What was wanted.
+    pub wish: Wish,
+    /// What was searched.
+    pub space: SchemeSpace,
+    /// How much of it.
+    pub completeness: Completeness,
+    /// What each rule left, in the order in which they are applied.
+    pub waterfall: Vec<Stage>,
+    /// What was found.
+    pub found: FoundSchemes,
+    /// The first schemes in the order of the wish, confirmed by rational arithmetic.
+    pub schemes: Vec<Scheme>,
+    /// If nothing was found: what there is where one rule gives way.
+    pub relaxations: Vec<Relaxation>,
+    /// The known transmission that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rediscovered: Option<Rediscovered>,
+}
+
+impl Contract for Schemes {
+    const FORMAT: &'static str = "willis-schemes-1";
+}
+
+impl Search {
+    /// Searches the whole space.
+    ///
+    /// # Errors
+    /// It would take longer than the [patience](Work::patience) of the surroundings: with the size of the space, and how
+    /// to narrow it.
+    pub fn run(&self, work: &dyn Work) -> Result<Schemes, Diagnostics> {
+        self.afford(work)?;
+        let mut harvest = Harvest::default();
+        self.harvest(work, 0..self.parts(), &mut harvest);
+        Ok(self.answer(&harvest))
+    }
+
+    /// The answer that parts give.
+    pub fn answer(&self, harvest: &Harvest) -> Schemes {
+        Schemes::of(self, harvest)
+    }
+}
+
+impl Schemes {
+    fn of(search: &Search, harvest: &Harvest) -> Self {
+        let wish = search.wish();
+        let tally = harvest.tally();
+        let stage = |rule: &str, about: String, left: u64| Stage { rule: rule.into(), about, left };
+        let states = super::table::binomial(wish.elements, wish.closed);
+        let mut waterfall = vec![
+            stage("choices", "elements of which no two do the same".into(), tally.choices),
+            stage(
+                "states",
+                format!(
+                    "enough of the {states} states have a ratio for {} forward and {} reverse gears",
+                    wish.forward, wish.reverse
+                ),
+                tally.enough,
+            ),
+            stage("chain", format!("{} gears in a row, one element off and one on", wish.forward), tally.chain),
+            stage("reverse", format!("{} reverse", wish.reverse), tally.reverse),
+            stage("attached", "no shaft dangles".into(), tally.attached),
+        ];
+        if wish.minimal {
+            waterfall.push(stage("minimal", "no element can be left out".into(), tally.minimal));
+        }
+        if wish.max_speed.is_some() || wish.max_torque.is_some() || wish.max_brakes.is_some() {
+            waterfall.push(stage("limits", "speeds, torques and brakes within their limits".into(), tally.limits));
+        }
+        if wish.planar {
+            waterfall.push(stage("planar", "can be drawn without a crossing".into(), tally.schemes));
+        }
+        let schemes = harvest.rows().iter().filter_map(|row| {
+            let mut scheme = Scheme::new(wish, row.layout, &row.elements)?;
+            scheme.known = Known::of(&row.layout, &row.elements).map(str::to_owned);
+            Some(scheme)
+        });
+        let (parts, done) = (search.parts(), harvest.done());
+        let complete = done == parts && wish.sample == 1;
+        let share = if parts == 0 { 1.0 } else { done as f64 / parts as f64 };
+        let space = SchemeSpace {
+            sets: wish.sets.len(),
+            shafts: wish.shafts(),
+            layouts: search.layouts(),
+            examined: tally.layouts,
+            choices: tally.choices,
+        };
+        let statement = statement(wish, &space, tally.schemes, complete, share);
+        Self {
+            format: Format::new(),
+            wish: wish.clone(),
+            completeness: Completeness { complete, parts, done, share, sample: wish.sample, statement },
+            space,
+            waterfall,
+            found: FoundSchemes {
+                layouts: tally.layouts_with_scheme,
+                schemes: tally.schemes,
+                classes: tally.classes,
+                by_brakes: tally.by_brakes.clone(),
+            },
+            schemes: schemes.collect(),
+            relaxations: vec![],
+            rediscovered: None,
+        }
+    }
+
+    /// For an empty answer: what there is where one rule of the wish gives way, each found by a search of its own.
+    ///
+    /// # Errors
+    /// These searches would take too long for the surroundings.
+    pub fn relax(&mut self, work: &dyn Work) -> Result<(), Diagnostics> {
+        for (change, wish) in relaxed(&self.wish) {
+            let Ok(search) = Search::new(&wish) else { continue };
+            search.afford(work)?;
+            let mut harvest = Harvest::default();
+            search.harvest(work, 0..search.parts(), &mut harvest);
+            if harvest.done() < search.parts() {
+                return Ok(());
+            }
+            self.relaxations.push(Relaxation { change, schemes: harvest.tally().schemes });
+        }
+        Ok(())
+    }
+}
+
+/// Wishes with one rule less, and what it is.
+fn relaxed(wish: &Wish) -> Vec<(String, Wish)> {
+    let mut all = vec![];
+    let base = Wish { top: 0, order: super::wish::Order::Found, ..wish.clone() };
+    if wish.forward > 1 {
+        let forward = wish.forward - 1;
+        all.push((format!("{forward} forward gears instead of {}", wish.forward), Wish { forward, ..base.clone() }));
+    }
+    if wish.reverse > 0 {
+        let reverse = wish.reverse - 1;
+        all.push((format!("{reverse} reverse gears instead of {}", wish.reverse), Wish { reverse, ..base.clone() }));
+    }
+    if wish.step != Bounds::default() {
+        all.push((
+            format!("steps of any size instead of {}", wish.step),
+            Wish { step: Bounds::default(), ..base.clone() },
+        ));
+    }
+    if wish.forward_range != Bounds::default() {
+        let change = format!("forward ratios of any size instead of {}", wish.forward_range);
+        all.push((change, Wish { forward_range: Bounds::default(), ..base.clone() }));
+    }
+    if wish.reverse_range != Bounds::default() {
+        let change = format!("reverse ratios of any size instead of {}", wish.reverse_range);
+        all.push((change, Wish { reverse_range: Bounds::default(), ..base.clone() }));
+    }
+    if wish.progressive {
+        all.push(("steps that may grow".into(), Wish { progressive: false, ..base.clone() }));
+    }
+    if let Some(limit) = &wish.max_speed {
+        let change = format!("no limit on speeds instead of {:.4}", limit.to_f64());
+        all.push((change, Wish { max_speed: None, ..base.clone() }));
+    }
+    if let Some(limit) = &wish.max_torque {
+        let change = format!("no limit on torques instead of {:.4}", limit.to_f64());
+        all.push((change, Wish { max_torque: None, ..base.clone() }));
+    }
+    if let Some(most) = wish.max_brakes {
+        all.push((format!("any number of brakes instead of {most}"), Wish { max_brakes: None, ..base.clone() }));
+    }
+    if wish.planar {
+        all.push(("drawings that cross".into(), Wish { planar: false, ..base.clone() }));
+    }
+    all
+}
+
+fn statement(wish: &Wish, space: &SchemeSpace, schemes: u64, complete: bool, share: f64) -> String {
+    let what = match &wish.layout {
+        Some(layout) => format!("The layout {layout}"),
+        None => format!("All layouts of {} simple sets with {} shafts besides the housing", space.sets, space.shafts),
+    };
+    let ratios: Vec<String> = wish.sets.iter().map(ToString::to_string).collect();
+    let mut text = format!(
+        "{what}, tooth ratios {}, {} of {} elements closed in every gear: {} layouts, {} choices of elements that differ \
+         in what they do, ",
+        ratios.join(", "),
+        wish.closed,
+        wish.elements,
+        space.examined,
+        space.choices,
+    );
+    if complete {
+        text +=
+            &format!("all examined or excluded by exact bounds; {schemes} satisfy; nothing else exists in this space.");
+    } else if wish.sample > 1 {
+        text +=
+            &format!("a sample of one in {} layouts; {schemes} satisfy; others exist outside the sample", wish.sample);
+        text += if share < 1.0 { ", and the search of it was not finished." } else { "." };
+    } else {
+        text += &format!(
+            "{:.1} % of the parts of the space are finished; {schemes} satisfy there; the rest was not examined.",
+            100.0 * share
+        );
+    }
+    text
+}
