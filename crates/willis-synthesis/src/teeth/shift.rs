@@ -1,0 +1,10 @@
+//! Profile shifts.
+
+use super::layout::SetKind;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Rack;
+
+pub(crate) fn shifts(_kind: SetKind, _teeth: &[i64], _rack: Rack) -> Option<Vec<f64>> {
+    None
+}
