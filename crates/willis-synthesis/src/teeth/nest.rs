@@ -73,6 +73,11 @@ pub(crate) struct Chosen<'a, 'g> {
 }
 
 impl<'g> Chosen<'_, 'g> {
+    /// The unit of the innermost loop.
+    pub fn innermost(&self) -> usize {
+        self.levels.last().map_or(0, |l| l.unit)
+    }
+
     /// For each unit the group that has its items, when the last loop is at `last`.
     pub fn units<'l>(&self, last: &'l Group, units: usize) -> Vec<&'l Group>
     where

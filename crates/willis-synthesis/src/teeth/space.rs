@@ -42,6 +42,8 @@ pub struct SetSpace {
     pub rules: Vec<Rule>,
     /// Whether profile shifts are found for teeth: pressure angle and rack of the set.
     pub(crate) rack: super::shift::Rack,
+    /// The largest ring.
+    pub(crate) ring_limit: Option<i64>,
 }
 
 /// Tooth numbers of one set, with what the rules say about each number of planets.
@@ -74,7 +76,7 @@ impl SetSpace {
     /// A set with ranges, no rules, no mismatch and no gap.
     pub fn new(kind: SetKind, gears: Vec<Counts>, planets: Counts) -> Self {
         let planets = planets.within(1, 64).take(MOST_PLANETS).collect();
-        Self { kind, gears, planets, mismatch: vec![0], gap: Length::ZERO, rules: vec![], rack: Default::default() }
+        Self { kind, gears, planets, mismatch: vec![0], gap: Length::ZERO, rules: vec![], rack: Default::default(), ring_limit: None }
     }
 
     /// The same with these rules.
@@ -104,7 +106,7 @@ impl SetSpace {
 
     /// How many stages there are: one for no rule, one for each.
     pub(crate) fn stages(&self) -> usize {
-        self.rules.len() + 1
+        self.rules.len() + 1 + usize::from(self.ring_limit.is_some())
     }
 
     fn gear(&self, k: usize) -> &Counts {
@@ -117,7 +119,7 @@ impl SetSpace {
         let simple = self.kind == SetKind::Simple;
         seeds.into_iter().flat_map(move |seed| {
             let items: Vec<Item> =
-                if simple { self.item(seed.to_vec()).into_iter().collect() } else { self.second(seed) };
+                if simple { vec![self.item(seed.to_vec())] } else { self.second(seed) };
             items.into_iter().filter(|i| i.passed.last().is_some_and(|p| *p != 0)).map(|i| i.teeth)
         })
     }
@@ -154,20 +156,20 @@ impl SetSpace {
                     for d in &self.mismatch {
                         let r2 = s + p + p2 + d;
                         if r2 > p2 && self.gear(4).contains(r2) {
-                            items.extend(self.item(vec![s, p, r, p2, r2]));
+                            items.push(self.item(vec![s, p, r, p2, r2]));
                         }
                     }
                 }
             }
             SetKind::Ravigneaux => {
-                items.extend(self.gear(0).within(1, r - 1).filter_map(|s1| self.item(vec![s1, s, p, r])));
+                items.extend(self.gear(0).within(1, r - 1).map(|s1| self.item(vec![s1, s, p, r])));
             }
         }
         items
     }
 
     /// Judges tooth numbers.
-    pub(crate) fn item(&self, teeth: Vec<i64>) -> Option<Item> {
+    pub(crate) fn item(&self, teeth: Vec<i64>) -> Item {
         let all: u16 = ((1u32 << self.planets.len()) - 1) as u16;
         let mut passed = vec![all];
         let mut embodiments = vec![1; self.planets.len()];
@@ -187,7 +189,28 @@ impl SetSpace {
             }
             passed.push(now);
         }
-        Some(Item { teeth, passed, embodiments })
+        if let Some(limit) = self.ring_limit {
+            passed.push(if self.ring(&teeth) <= limit { now } else { 0 });
+        }
+        Item { teeth, passed, embodiments }
+    }
+
+    /// The numbers of planets, as bits, with which teeth of a set without short planets follow all rules.
+    pub(crate) fn admitted(&self, teeth: &[i64]) -> u16 {
+        let all = ((1u32 << self.planets.len()) - 1) as u16;
+        if self.ring_limit.is_some_and(|limit| self.ring(teeth) > limit) {
+            return 0;
+        }
+        self.rules.iter().fold(all, |now, rule| if now == 0 { 0 } else { self.judge(*rule, teeth, now) })
+    }
+
+    /// Teeth of the largest ring.
+    pub(crate) fn ring(&self, teeth: &[i64]) -> i64 {
+        match self.kind {
+            SetKind::Simple => teeth[2],
+            SetKind::Wolfrom => teeth[2].max(teeth[4]),
+            SetKind::Ravigneaux => teeth[3],
+        }
     }
 
     /// Short planets that fit a Ravigneaux set with so many planets.
@@ -197,7 +220,38 @@ impl SetSpace {
         range.into_iter().flatten().filter(move |p| set.short_fits(*p, planets, self.gap))
     }
 
-    /// Whether a Ravigneaux set counts its short planets apart at a stage.
+    /// The short planet that a Ravigneaux set gets: the first that fits, else one like the long planet. None for others.
+    pub(crate) fn shorts_or_long(&self, teeth: &[i64], planets: i64) -> Option<i64> {
+        (self.kind == SetKind::Ravigneaux).then(|| self.shorts(teeth, planets).next().unwrap_or(teeth[2]))
+    }
+
+    /// How many coaxial tooth numbers there are, without short planets.
+    pub(crate) fn size(&self) -> f64 {
+        let seeds = self.seeds();
+        match self.kind {
+            SetKind::Simple => seeds.len() as f64,
+            SetKind::Ravigneaux => seeds.iter().map(|s| self.gear(0).within(1, s[2] - 1).count() as f64).sum(),
+            SetKind::Wolfrom => {
+                let (planet, ring) = (self.gear(3), self.gear(4));
+                let most = ring.most().unwrap_or(MOST_TEETH);
+                let of = |[s, p, _]: &[i64; 3]| -> f64 {
+                    let fits = |d: &i64| {
+                        let a = s + p + d;
+                        let low = (ring.least().unwrap_or(1) - a).max(1);
+                        if ring.is_gapless() {
+                            planet.within(low, most - a).count()
+                        } else {
+                            planet.within(low, most - a).filter(|p2| ring.contains(a + p2)).count()
+                        }
+                    };
+                    self.mismatch.iter().map(fits).sum::<usize>() as f64
+                };
+                seeds.iter().map(of).sum()
+            }
+        }
+    }
+
+    /// The numbers of planets that pass a rule.
     fn judge(&self, rule: Rule, z: &[i64], now: u16) -> u16 {
         let each = |test: &dyn Fn(i64) -> bool| {
             let passes = |(k, n): (usize, &i64)| u16::from(now >> k & 1 == 1 && test(*n)) << k;
@@ -243,7 +297,7 @@ impl SetSpace {
         for seed in seeds {
             let mut items = vec![];
             if self.kind == SetKind::Simple {
-                items.extend(self.item(seed.to_vec()).filter(|i| every_stage || i.passed.last() != Some(&0)));
+                items.extend(Some(self.item(seed.to_vec())).filter(|i| every_stage || i.is_admissible()));
                 if items.is_empty() {
                     continue;
                 }
@@ -309,7 +363,7 @@ impl Group {
             let mut items: Vec<((i64, i64), Item)> = vec![];
             for seed in &self.seeds {
                 for item in space.second(*seed) {
-                    if every_stage || item.passed.last() != Some(&0) {
+                    if every_stage || item.is_admissible() {
                         let z = &item.teeth;
                         let y = match space.kind {
                             SetKind::Wolfrom => reduced(z[1] * z[4], z[0] * z[3]),

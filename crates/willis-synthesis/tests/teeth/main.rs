@@ -1,0 +1,4 @@
+//! Tooth numbers: counts that an exhaustive search must reproduce exactly, each found in at least two ways.
+
+mod counts;
+mod layouts;
