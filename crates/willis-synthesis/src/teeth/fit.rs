@@ -269,7 +269,7 @@ mod tests {
 
     #[test]
     fn sines_are_enclosed() {
-        for n in 7..60 {
+        for n in [7, 8, 11, 24, 59] {
             let [low, high] = enclosed_sine(n);
             assert!(low < high);
             let sine = (std::f64::consts::PI / n as f64).sin();

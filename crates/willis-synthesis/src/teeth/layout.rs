@@ -11,7 +11,6 @@
 
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
-use willis::kinematics::{Configuration, Ratio};
 use willis::train::{FRAME, MemberId, MemberKind, Train};
 
 use super::form::{Quotient, Row, Structure, null_vector, structure};
@@ -251,23 +250,6 @@ impl Layout {
         let [Some(input), Some(output)] = train.ends(state) else {
             return Err(unfit("has no input and output").hint("list `terminals`, the input first"));
         };
-        let ids: Vec<MemberId> = {
-            // Numbers of members come from the train only.
-            let mut ids = vec![FRAME; train.members().len()];
-            for (k, m) in train.members().iter().enumerate() {
-                if let Some(id) = train.member(&m.name) {
-                    ids[k] = id;
-                }
-            }
-            ids
-        };
-        let configuration = Configuration::new(train, &engaged, &[], train.terminals());
-        match configuration.ratio(ids[input.index()], ids[output.index()]) {
-            Ratio::InputLocked => return Err(unfit("locks its input")),
-            Ratio::Undetermined => return Err(unfit("leaves its output free")),
-            Ratio::OutputAtRest => return Err(unfit("holds its output")),
-            _ => {}
-        }
         // Members that turn as one.
         let members = train.members().len();
         let mut group: Vec<usize> = (0..members).collect();
