@@ -200,10 +200,10 @@ impl Design {
     }
 
     /// The states of a train as the certified solver sees them.
-    fn certified(&self, teeth: &Teeth) -> Option<Named<StateReport>> {
+    pub(crate) fn certified(&self, teeth: &Teeth) -> Option<Named<StateReport>> {
         let text = self.text_of(teeth, None);
         let model = Model::from_toml(&text).ok()?;
-        let train = willis_without_operations(&model);
+        let train = willis::unstable::without_operations(model.train());
         let analysis = analyze(&train, &Selection::default()).ok()?;
         Some(analysis.ratios)
     }
@@ -361,7 +361,6 @@ impl Design {
             let before = document.get("notes").and_then(toml_edit::Item::as_str).unwrap_or("").trim().to_owned();
             let notes = format!("{before}\nTooth numbers found for this wish: {}.", self.wish());
             document["notes"] = toml_edit::value(notes.trim());
-            // Keys at the top of a file must stand before its tables.
         }
         document.to_string()
     }
@@ -376,9 +375,4 @@ impl Design {
     fn relaxations(&self) -> Vec<Relaxation> {
         super::relax::relaxations(self)
     }
-}
-
-/// The train without its operating points: they are not asked for.
-fn willis_without_operations(model: &Model) -> willis::Train {
-    willis::unstable::without_operations(model.train())
 }

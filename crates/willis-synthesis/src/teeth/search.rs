@@ -621,3 +621,200 @@ impl Receive for Judge<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use willis::Model;
+    use willis::analysis::{Selection, Verdict, analyze};
+
+    /// Trains of the repository: the text, and for each designed set its gears as ranges.
+    fn cases() -> Vec<(&'static str, Vec<(&'static str, &'static str)>)> {
+        vec![
+            (
+                include_str!("../../../../examples/zf-8hp70.toml"),
+                vec![
+                    ("P1.sun.teeth", "40, 48"),
+                    ("P1.ring.teeth", "96"),
+                    ("P2.sun.teeth", "45, 48"),
+                    ("P2.ring.teeth", "95, 96"),
+                    ("P3.sun.teeth", "69, 71"),
+                    ("P4.sun.teeth", "23, 25"),
+                ],
+            ),
+            (
+                include_str!("../../../../examples/zf-6hp26.toml"),
+                vec![("front.sun.teeth", "35..38"), ("rear.small_sun.teeth", "29..33"), ("rear.large_sun.teeth", "38")],
+            ),
+            (
+                include_str!("../../../../examples/wolfrom-498-self-locking.toml"),
+                vec![
+                    ("P1.suns.0.teeth", "12..14"),
+                    ("P1.suns.0.planet_teeth", "33..36"),
+                    ("P1.rings.0.planet_teeth", "33..36"),
+                    ("P1.rings.0.teeth", "..90"),
+                    ("P1.rings.1.planet_teeth", "30..38"),
+                    ("P1.rings.1.teeth", "..90"),
+                ],
+            ),
+            (
+                include_str!("../../../../examples/simpson-ford-c4.toml"),
+                vec![("front.sun.teeth", "32..35"), ("rear.sun.teeth", "33"), ("rear.ring.teeth", "69..75")],
+            ),
+        ]
+    }
+
+    fn design(text: &str, ranges: &[(&str, &str)], rules: &str) -> Design {
+        let mut document: toml_edit::DocumentMut = text.parse().unwrap();
+        let model = Model::from_toml(text).unwrap();
+        for (path, range) in ranges {
+            let parts: Vec<&str> = path.split('.').collect();
+            let sets = document["set"].as_array_of_tables_mut().unwrap();
+            let mut item = &mut toml_edit::Item::None;
+            for t in sets.iter_mut() {
+                if t["name"].as_str() == Some(parts[0]) {
+                    item = t.get_mut(parts[1]).unwrap();
+                    break;
+                }
+            }
+            if let Ok(k) = parts[2].parse::<usize>() {
+                let table = item.as_array_mut().unwrap().get_mut(k).unwrap().as_inline_table_mut().unwrap();
+                table.insert(parts[3], (*range).into());
+            } else {
+                item[parts[2]] = toml_edit::value(*range);
+            }
+        }
+        let ratios = analyze(model.train(), &Selection::default()).unwrap().ratios;
+        let targets: Vec<String> = ratios
+            .iter()
+            .filter(|(_, r)| r.value.is_some_and(|v| v != 1.0))
+            .map(|(n, r)| {
+                let state = if n == "as drawn" { String::new() } else { format!("state = \"{n}\", ") };
+                format!("{{ {state}ratio = {:.4}, tolerance = 0.5, any_sign = true }}", r.value.unwrap())
+            })
+            .collect();
+        let wishes = format!("[design]\nmismatch = \"-1..1\"\nrules = {rules}\ntarget = [{}]", targets.join(", "));
+        let wishes: toml_edit::DocumentMut = wishes.parse().unwrap();
+        document["design"] = wishes["design"].clone();
+        let text = document.to_string();
+        Design::from_toml(&text).unwrap_or_else(|e| panic!("{}", e.render("design", &text, false)))
+    }
+
+    /// Every train of small spaces: ratios, efficiencies and verdicts are those of the certified solver.
+    #[test]
+    fn what_is_judged_is_what_is_certified() {
+        for (text, ranges) in cases() {
+            let design = design(text, &ranges, "[]");
+            let mut all: Vec<Teeth> = vec![];
+            design.for_each(|t| all.push(t.iter().map(|z| z.to_vec()).collect()));
+            assert!(all.len() > 3, "{}: {}", design.name, all.len());
+            for teeth in all.iter().step_by((all.len() / 12).max(1)) {
+                let states = design.certified(teeth).unwrap();
+                let y = design.variables(teeth);
+                for (k, target) in &design.targets {
+                    let row = states.get(&target.state).unwrap();
+                    let value = design.layout.states[*k].ratio.at(&y);
+                    assert!((value / row.value.unwrap() - 1.0).abs() < 1e-9, "{} {teeth:?} {}", design.name, target.state);
+                    let mut one = design.clone();
+                    one.targets.retain(|t| t.0 == *k);
+                    let judged = one.judge(teeth, false).unwrap();
+                    for (direction, mine) in [(&row.drive, judged.forward), (&row.coast, judged.backward)] {
+                        let expected = match direction.verdict {
+                            Verdict::Unique => direction.efficiency.unwrap(),
+                            Verdict::Locked => 0.0,
+                            other => panic!("{} {teeth:?} {}: {other:?}", design.name, target.state),
+                        };
+                        assert!(
+                            (mine - expected).abs() < 1e-9,
+                            "{} {teeth:?} {}: {mine} {expected}",
+                            design.name,
+                            target.state
+                        );
+                    }
+                    assert_eq!(judged.self_locking, row.coast.verdict == Verdict::Locked);
+                }
+            }
+        }
+    }
+
+    /// Windows find what trying every tooth number finds, with the ratios of the certified solver.
+    #[test]
+    fn windows_find_what_brute_force_finds() {
+        for (text, ranges) in cases() {
+            let wide = design(text, &ranges, "[]");
+            let mut all: Vec<Teeth> = vec![];
+            wide.for_each(|t| all.push(t.iter().map(|z| z.to_vec()).collect()));
+            let mut product = 1;
+            for s in &wide.sets {
+                product *= s.space.all().count();
+            }
+            for percent in [2, 5, 12] {
+                let mut narrow = wide.clone();
+                let tolerance = willis::exact::Rational::new(percent, 100);
+                for (_, t) in &mut narrow.targets {
+                    t.ratio = super::super::wish::Ratio::near(t.ratio.aim.clone(), &tolerance, false);
+                }
+                // The brute way: every combination of teeth, each ratio by elimination in rationals.
+                let lists: Vec<Vec<Vec<i64>>> = narrow.sets.iter().map(|s| s.space.all().collect()).collect();
+                let mut brute = 0;
+                for k in 0..product {
+                    let mut rest = k;
+                    let teeth: Teeth = lists
+                        .iter()
+                        .map(|l| {
+                            let item = l[rest % l.len()].clone();
+                            rest /= l.len();
+                            item
+                        })
+                        .collect();
+                    // Floating point first: most are far away.
+                    let y = narrow.variables(&teeth);
+                    let off = |f: f64| {
+                        narrow.targets.iter().all(|(s, t)| {
+                            t.ratio.deviation(narrow.layout.states[*s].ratio.at(&y)) <= f * percent as f64 / 100.0
+                        })
+                    };
+                    if !off(1.05) {
+                        continue;
+                    }
+                    let states = narrow.certified(&teeth).unwrap();
+                    brute += u64::from(narrow.targets.iter().all(|(_, t)| {
+                        let ratio = states.get(&t.state).and_then(|r| r.exact.clone());
+                        ratio.is_some_and(|r| t.ratio.windows.iter().any(|[a, b]| *a <= r && r <= *b))
+                    }));
+                }
+                assert_eq!(narrow.count().trains, brute, "{} {percent} %", narrow.name);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_of_a_search_make_the_whole() {
+        let (text, ranges) = &cases()[2];
+        let design = design(text, ranges, r#"["assembly"]"#);
+        let serial = &willis::work::Serial;
+        let whole = design.search(Progress::default(), None, serial).unwrap();
+        let [a, b] = [1, 2].map(|k| design.search(Progress::default(), Some((k, 2)), serial).unwrap());
+        assert_ne!(a, whole);
+        assert!(design.merge(a.clone(), a.clone()).is_err());
+        assert_eq!(design.merge(a.clone(), b).unwrap(), whole);
+        // Interrupted, kept as text, and resumed.
+        let kept = serde_json::to_string(&a).unwrap();
+        let resumed = design.search(serde_json::from_str(&kept).unwrap(), None, serial).unwrap();
+        assert_eq!(resumed, whole);
+    }
+
+    #[test]
+    fn a_cancelled_search_says_what_is_done() {
+        struct Stops;
+        impl Work for Stops {
+            fn cancelled(&self) -> bool {
+                true
+            }
+        }
+        let (text, ranges) = &cases()[2];
+        let answer = design(text, ranges, "[]").answer(&super::super::report::Request::default(), &Stops).unwrap();
+        assert!(!answer.completeness.complete && answer.completeness.done == 0);
+        assert!(answer.completeness.statement.contains("0.0 % of the space is done"));
+    }
+}

@@ -189,7 +189,8 @@ impl<'l> Point<'l> {
             }
             if agrees {
                 let out = -x[self.factors.len()] * leaves / (torque * enters);
-                if !all.iter().any(|o| o.iter().zip(&x).all(|(a, b)| (a - b).abs() <= 1e-9 * (a.abs() + b.abs()))) {
+                // Where both ends feed power in, nothing is driven.
+                if out > 1e-12 && !all.iter().any(|o| o.iter().zip(&x).all(|(a, b)| (a - b).abs() <= 1e-9 * (a.abs() + b.abs()))) {
                     all.push(x);
                     found.push(out);
                 }
@@ -197,8 +198,7 @@ impl<'l> Point<'l> {
         }
         match found[..] {
             [] => Way::Locks,
-            [one] if one > 1e-12 => Way::One(one),
-            [_] => Way::Locks,
+            [one] => Way::One(one),
             _ => {
                 let low = found.iter().copied().fold(f64::INFINITY, f64::min);
                 let high = found.iter().copied().fold(f64::NEG_INFINITY, f64::max);

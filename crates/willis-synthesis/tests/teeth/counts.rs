@@ -12,7 +12,7 @@ fn problem(id: &str) -> Value {
     all["problems"].as_array().unwrap().iter().find(|p| p["id"] == id).unwrap().clone()
 }
 
-fn read(text: &str) -> Design {
+pub fn read(text: &str) -> Design {
     Design::from_toml(text).unwrap_or_else(|e| panic!("{}", e.render("design.toml", text, false)))
 }
 
@@ -319,7 +319,7 @@ fn lepelletier() {
     assert_eq!(["small_sun", "large_sun", "long_planet", "ring"].map(|g| *z.get(g).unwrap()), [35, 43, 26, 95]);
 }
 
-fn eight_speeds(id: &str, suns: &str, planet: &str, ring: &str, planets: &str) -> (Value, Design) {
+pub fn eight_speeds(id: &str, suns: &str, planet: &str, ring: &str, planets: &str) -> (Value, Design) {
     let p = problem(id);
     let a = &p["parameters"];
     let names = ["1", "2", "3", "4", "5", "6", "7", "8", "R"];
