@@ -18,9 +18,7 @@ mod space;
 mod statics;
 mod wish;
 
-pub use answer::{
-    Completeness, DesignAnswer, DesignRow, Relaxation, SetRange, SetRow, Space, Stage, StateRow,
-};
+pub use answer::{Completeness, DesignAnswer, DesignRow, Relaxation, SetRange, SetRow, Space, Stage, StateRow};
 pub use document::Design;
 pub use front::Front;
 pub use layout::SetKind;

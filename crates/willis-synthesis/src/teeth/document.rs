@@ -51,6 +51,14 @@ pub(crate) struct DesignedSet {
     pub has_geometry: bool,
 }
 
+impl DesignedSet {
+    /// Profile shifts of its gears, with the short planet of a Ravigneaux set; none where no choice is sound.
+    pub fn shifts(&self, teeth: &[i64], short: Option<i64>) -> Option<Vec<f64>> {
+        let all: Vec<i64> = teeth.iter().copied().chain(short).collect();
+        super::shift::shifts(self.space.kind, &all, self.space.rack)
+    }
+}
+
 /// A design file, read and checked: what a train must do, and what its teeth may be.
 ///
 /// # Example
@@ -95,7 +103,17 @@ pub struct Design {
 
 /// Keys of the table `[design]`.
 const KEYS: [&str; 12] = [
-    "tolerance", "planets", "mismatch", "rules", "gap", "module", "limits", "require", "minimize", "maximize", "target",
+    "tolerance",
+    "planets",
+    "mismatch",
+    "rules",
+    "gap",
+    "module",
+    "limits",
+    "require",
+    "minimize",
+    "maximize",
+    "target",
     "input_speed",
 ];
 
@@ -116,7 +134,8 @@ impl Reader<'_> {
 
     fn kind(&mut self, place: &str, item: &Item, what: &str) {
         let found = item.type_name();
-        let d = Diagnostic::new(Code::WrongType, place, format!("`{place}` takes {what}, not a value of the type {found}"));
+        let d =
+            Diagnostic::new(Code::WrongType, place, format!("`{place}` takes {what}, not a value of the type {found}"));
         self.report(d, place, item.span());
     }
 
@@ -335,13 +354,15 @@ impl Design {
         rules.sort_unstable();
         rules.dedup();
         let gap = match table.get("gap") {
-            Some(item) => match item.as_str().map(|t| t.trim_end_matches("modules").trim_end_matches("module").trim()) {
-                Some(t) => t.parse::<Rational>().ok().as_ref().and_then(Length::of).or_else(|| {
-                    r.kind("design.gap", item, "a number of modules, such as \"0.5\"");
-                    None
-                }),
-                None => r.rational("design.gap", item).as_ref().and_then(Length::of),
-            },
+            Some(item) => {
+                match item.as_str().map(|t| t.trim_end_matches("modules").trim_end_matches("module").trim()) {
+                    Some(t) => t.parse::<Rational>().ok().as_ref().and_then(Length::of).or_else(|| {
+                        r.kind("design.gap", item, "a number of modules, such as \"0.5\"");
+                        None
+                    }),
+                    None => r.rational("design.gap", item).as_ref().and_then(Length::of),
+                }
+            }
             None => Some(Length::ZERO),
         };
         let module = table.get("module").and_then(|i| r.length("design.module", i));
@@ -383,8 +404,12 @@ impl Design {
             return None;
         }
         if sets.is_empty() {
-            let d = Diagnostic::new(Code::MissingKey, "set", "no set has a range of teeth, so that nothing is to be designed")
-                .hint("write a range for some tooth numbers: `teeth = \"18..60\"`");
+            let d = Diagnostic::new(
+                Code::MissingKey,
+                "set",
+                "no set has a range of teeth, so that nothing is to be designed",
+            )
+            .hint("write a range for some tooth numbers: `teeth = \"18..60\"`");
             r.report(d, "set", None);
             return None;
         }
@@ -446,7 +471,12 @@ impl Design {
         require
     }
 
-    fn target(item: &Item, place: &str, tolerance: &Rational, r: &mut Reader<'_>) -> Option<(Option<String>, Ratio, Option<Range<usize>>)> {
+    fn target(
+        item: &Item,
+        place: &str,
+        tolerance: &Rational,
+        r: &mut Reader<'_>,
+    ) -> Option<(Option<String>, Ratio, Option<Range<usize>>)> {
         const KEYS: [&str; 4] = ["state", "ratio", "tolerance", "any_sign"];
         let Some(table) = item.as_table_like() else {
             r.kind(place, item, "a table");
@@ -571,7 +601,9 @@ impl Design {
                 Some((p, item)) => r.counts(&format!("{place}.{p}.count"), item),
                 None => Some(planets.clone().unwrap_or_else(|| Counts::range(3, 3))),
             };
-            let (Some(gears), Some(planets)) = (gears.into_iter().collect::<Option<Vec<_>>>(), planets) else { continue };
+            let (Some(gears), Some(planets)) = (gears.into_iter().collect::<Option<Vec<_>>>(), planets) else {
+                continue;
+            };
             if planets.within(1, 64).count() == 0 || planets.least().is_some_and(|n| n < 1) {
                 let message = format!("`{planets}` is no number of planets from 1 to 64");
                 r.report(Diagnostic::new(Code::OutOfRange, "", message), &format!("{place}.planet.count"), None);
@@ -627,7 +659,9 @@ impl Design {
                     "design.module",
                     format!("a ring diameter of {} mm is asked for, but no module is given", limit * 1e3),
                 )
-                .hint("add `module = \"0.5 mm\"` to `[design]`, or a `geometry` to the set, or give the limit in modules");
+                .hint(
+                    "add `module = \"0.5 mm\"` to `[design]`, or a `geometry` to the set, or give the limit in modules",
+                );
                 return Err(one(d));
             }
         }
@@ -648,24 +682,40 @@ impl Design {
         let mut any = template.clone();
         let mut wrong = Diagnostics::default();
         for s in &sets {
+            // Those that need no shift first.
+            let mut mismatch = s.space.mismatch.clone();
+            mismatch.sort_by_key(|d| d.abs());
             let plain = SetSpace { rules: vec![], ring_limit: None, ..s.space.clone() };
-            let Some(teeth) = plain.all().next() else {
+            let first = |d: i64| plain.clone().mismatch([d]).all().next();
+            let Some(teeth) = mismatch.into_iter().find_map(first) else {
                 let ranges: Vec<String> =
                     s.space.kind.gears().iter().zip(&s.space.gears).map(|(n, c)| format!("{n} {c}")).collect();
-                let message = format!("set `{}`: no teeth of these ranges lie on one axis: {}", s.name, ranges.join(", "));
+                let message =
+                    format!("set `{}`: no teeth of these ranges lie on one axis: {}", s.name, ranges.join(", "));
                 let d = Diagnostic::new(Code::NotCoaxial, format!("set[{}]", s.index), message);
                 wrong.push(d.hint("the ring needs s + 2 p teeth; widen a range, or allow a `mismatch`"));
                 continue;
             };
             let short = (s.space.kind == SetKind::Ravigneaux).then(|| teeth[2]);
-            substitute(&mut any, s, &teeth, s.space.planets[0], short, None);
+            let shifts = if s.has_geometry { s.shifts(&teeth, short) } else { None };
+            substitute(&mut any, s, &teeth, s.space.planets[0], short, shifts.as_deref());
         }
         if !wrong.is_empty() {
             return Err(wrong);
         }
         let model = Model::from_toml(&any.to_string()).map_err(|mut e| {
             // The places are those of another text.
-            e = e.iter().cloned().map(|mut d| { d.span = None; d }).fold(Diagnostics::default(), |mut all, d| { all.push(d); all });
+            e = e
+                .iter()
+                .cloned()
+                .map(|mut d| {
+                    d.span = None;
+                    d
+                })
+                .fold(Diagnostics::default(), |mut all, d| {
+                    all.push(d);
+                    all
+                });
             e
         })?;
         let mut kinds = vec![None; model.train().sets().len()];
@@ -695,7 +745,11 @@ impl Design {
                     let names = layout.states.iter().map(|s| s.name.as_str());
                     let mut d = match &state {
                         Some(name) => Diagnostic::missing(Code::UnknownSelection, "state", name, names),
-                        None => Diagnostic::new(Code::MissingKey, "", "the train has several states: say which one is meant"),
+                        None => Diagnostic::new(
+                            Code::MissingKey,
+                            "",
+                            "the train has several states: say which one is meant",
+                        ),
                     };
                     d.place = place;
                     d.span = span.map(Into::into);

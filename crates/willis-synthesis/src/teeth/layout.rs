@@ -105,7 +105,6 @@ pub(crate) struct Layout {
     /// Planets of designed sets: member, set, its gear, the sun that drives it and that gear, carrier.
     pub planets: Vec<PlanetOf>,
     pub states: Vec<LayoutState>,
-    pub members: Vec<String>,
 }
 
 /// A planet of a set that is designed.
@@ -215,7 +214,6 @@ impl Layout {
             elements,
             planets,
             states: vec![],
-            members: train.members().iter().map(|m| m.name.clone()).collect(),
         };
         let mut wrong = Diagnostics::default();
         let count = train.states().len();

@@ -81,6 +81,10 @@ pub(crate) fn lines(space: &SetSpace, sun: i64, windows: &[Bounds], found: &mut 
                         }
                         continue;
                     }
+                    // Most windows lie between two whole numbers, or outside the range.
+                    if x > high as f64 + 0.5 || y < low as f64 - 0.5 {
+                        continue;
+                    }
                     let first = up(x, sun, p1, r1, a, window[0]).max(low);
                     let last = down(y, sun, p1, r1, a, window[1]).min(high);
                     for p2 in first..=last {
@@ -94,8 +98,11 @@ pub(crate) fn lines(space: &SetSpace, sun: i64, windows: &[Bounds], found: &mut 
 
 /// The smallest whole number that is not below the crossing.
 fn up(x: f64, s: i64, p1: i64, r1: i64, a: i64, v: (i64, i64)) -> i64 {
-    if (x - x.round()).abs() > 1e-6 || x.abs() > 1e9 {
-        return x.clamp(-1e9, 1e9).ceil() as i64;
+    // Towards zero, in one instruction; x is within the range of numbers that are asked for, or far below.
+    let cut = x.clamp(-1e9, 1e9) as i64;
+    let rest = x - cut as f64;
+    if (1e-6..1.0 - 1e-6).contains(&rest.abs()) {
+        return cut + i64::from(rest > 0.0);
     }
     let (n, d) = crossing(s, p1, r1, a, v);
     let (n, d) = if d < 0 { (-n, -d) } else { (n, d) };
@@ -104,8 +111,10 @@ fn up(x: f64, s: i64, p1: i64, r1: i64, a: i64, v: (i64, i64)) -> i64 {
 
 /// The largest whole number that is not above the crossing.
 fn down(x: f64, s: i64, p1: i64, r1: i64, a: i64, v: (i64, i64)) -> i64 {
-    if (x - x.round()).abs() > 1e-6 || x.abs() > 1e9 {
-        return x.clamp(-1e9, 1e9).floor() as i64;
+    let cut = x.clamp(-1e9, 1e9) as i64;
+    let rest = x - cut as f64;
+    if (1e-6..1.0 - 1e-6).contains(&rest.abs()) {
+        return cut - i64::from(rest < 0.0);
     }
     let (n, d) = crossing(s, p1, r1, a, v);
     let (n, d) = if d < 0 { (-n, -d) } else { (n, d) };

@@ -8,6 +8,8 @@
 //!
 //! Windows are found in floating point; whatever is within 10⁻⁹ of an end is decided by rational numbers.
 
+use std::sync::Arc;
+
 use willis::exact::Rational;
 use willis::work::Work;
 
@@ -22,15 +24,16 @@ pub(crate) struct Target {
 }
 
 /// A set of a coupled train: its space, and its basic ratios in order.
+#[derive(Clone)]
 pub(crate) struct Unit<'s> {
     pub space: &'s SetSpace,
-    pub groups: Vec<Group>,
+    pub groups: Arc<Vec<Group>>,
     pub every_stage: bool,
 }
 
 impl<'s> Unit<'s> {
     pub fn new(space: &'s SetSpace, every_stage: bool) -> Self {
-        Self { space, groups: space.groups(every_stage), every_stage }
+        Self { space, groups: Arc::new(space.groups(every_stage)), every_stage }
     }
 }
 
@@ -140,11 +143,6 @@ impl<'u, 's> Nest<'u, 's> {
             })
             .collect();
         Self { units, levels, targets, bounds }
-    }
-
-    /// The order of the loops: numbers of units, each as often as it has variables.
-    pub fn order(&self) -> Vec<usize> {
-        self.levels.iter().map(|l| l.unit).collect()
     }
 
     /// How many steps the outermost loop has.
@@ -444,7 +442,7 @@ impl<'w> Walk<'w, '_, '_> {
             let at = |y: f64| from + part.partition_point(|g| g.value < y);
             // Whatever is near a cut is asked by itself; between cuts nothing changes.
             let mut open_from = from;
-            for (k, pair) in cuts.windows(2).enumerate() {
+            for pair in cuts.windows(2) {
                 let [a, b] = [pair[0], pair[1]];
                 let (start, end) = (at(a * (1.0 + NEAR)).max(open_from), at(b * (1.0 - NEAR)).max(open_from));
                 for e in open_from..start.min(to) {
@@ -457,7 +455,6 @@ impl<'w> Walk<'w, '_, '_> {
                     add(start, end);
                 }
                 open_from = end.max(start).max(open_from);
-                let _ = k;
             }
             for e in open_from..to {
                 if self.passes(t, depth, &slice[e]) {

@@ -18,7 +18,7 @@ fn best(design: &Design, objective: Objective) -> Option<(u64, f64)> {
     let progress = asking.search(Progress::default(), None, &Serial).ok()?;
     let trains = progress.waterfall.last()?.trains;
     let teeth = progress.front.first()?;
-    let judged = asking.judge(teeth, true)?;
+    let judged = asking.judge(teeth, asking.needs())?;
     Some((trains, asking.value(objective, &judged, teeth)))
 }
 
@@ -63,7 +63,8 @@ pub(crate) fn relaxations(design: &Design) -> Vec<Relaxation> {
                 let mut nearest = design.clone();
                 // Nothing excludes any ratio of this state.
                 let wide = Rational::from(1_000_000);
-                nearest.targets[k].1.ratio = Ratio { aim: target.ratio.aim.clone(), windows: vec![[-wide.clone(), wide]] };
+                nearest.targets[k].1.ratio =
+                    Ratio { aim: target.ratio.aim.clone(), windows: vec![[-wide.clone(), wide]] };
                 let others = nearest.targets.clone();
                 let near = best_ratio(&nearest, k, state);
                 debug_assert_eq!(others.len(), design.targets.len());

@@ -11,8 +11,7 @@ use super::answer::{Completeness, DesignAnswer, DesignRow, Relaxation, SetRange,
 use super::document::{Design, substitute};
 use super::fit::{Phase, gcd};
 use super::layout::SetKind;
-use super::search::{Judged, Progress, Teeth};
-use super::shift;
+use super::search::{Judged, Needs, Progress, Teeth};
 use super::wish::Objective;
 
 /// What of an answer is wanted.
@@ -75,7 +74,7 @@ impl Design {
             .front
             .iter()
             .filter_map(|teeth| {
-                let judged = self.judge(teeth, true)?;
+                let judged = self.judge(teeth, Needs::ALL)?;
                 let value = self.value(sort, &judged, teeth);
                 Some((if sort.is_better_high() { -value } else { value }, teeth.clone(), judged))
             })
@@ -144,7 +143,9 @@ impl Design {
             )
         } else {
             let share = if of == 0 { 0.0 } else { 100.0 * done as f64 / of as f64 };
-            format!("{what}; {share:.1} % of the space is done; {left} sets of tooth numbers so far. There may be more.")
+            format!(
+                "{what}; {share:.1} % of the space is done; {left} sets of tooth numbers so far. There may be more."
+            )
         }
     }
 
@@ -236,7 +237,9 @@ impl Design {
                 let (drive, coast) = (direction(&|r| r.drive.clone()), direction(&|r| r.coast.clone()));
                 for d in [&drive, &coast] {
                     all_unique &= d.as_ref().is_some_and(|d| match d.verdict {
-                        Verdict::Unique => d.certificate.is_none_or(|c| c.unique_for_every_load || d.efficiency.is_some()),
+                        Verdict::Unique => {
+                            d.certificate.is_none_or(|c| c.unique_for_every_load || d.efficiency.is_some())
+                        }
                         Verdict::Locked => true,
                         _ => false,
                     });
@@ -286,21 +289,12 @@ impl Design {
                     }
                 };
                 let phase: Phase = item.phase(0, chosen);
-                let mut with_short = z.clone();
-                with_short.extend(short);
-                let shifts = shift::shifts(space.kind, &with_short, space.rack).map(|x| {
-                    named.iter().map(|(n, _)| n.clone()).zip(x).collect::<Named<f64>>()
-                });
+                let shifts =
+                    s.shifts(z, short).map(|x| named.iter().map(|(n, _)| n.clone()).zip(x).collect::<Named<f64>>());
                 (s.name.clone(), SetRow { teeth: Named(named), planets, chosen, hunting, phase, shifts })
             })
             .collect();
-        let lock_margin = if judged.lock_margin.is_finite() {
-            Some(judged.lock_margin)
-        } else if self.needs_margin() || self.require.lock_margin.is_some() {
-            None
-        } else {
-            self.margin(teeth)
-        };
+        let lock_margin = judged.lock_margin.is_finite().then_some(judged.lock_margin);
         DesignRow {
             number,
             sets,
@@ -345,10 +339,12 @@ impl Design {
                 Some(o) => o.teeth.get("short_planet").copied(),
                 None => s.space.shorts_or_long(z, planets),
             };
-            let shifts: Option<Vec<f64>> = own
-                .filter(|_| s.has_geometry)
-                .and_then(|o| o.shifts.as_ref())
-                .map(|x| x.iter().map(|(_, v)| *v).collect());
+            let shifts: Option<Vec<f64>> = match own {
+                Some(o) => o.shifts.as_ref().map(|x| x.iter().map(|(_, v)| *v).collect()),
+                None if s.has_geometry => s.shifts(z, short),
+                None => None,
+            };
+            let shifts = shifts.filter(|_| s.has_geometry);
             substitute(&mut document, s, z, planets, short, shifts.as_deref());
         }
         if let Some(row) = row {
@@ -363,12 +359,6 @@ impl Design {
             document["notes"] = toml_edit::value(notes.trim());
         }
         document.to_string()
-    }
-
-    fn margin(&self, teeth: &Teeth) -> Option<f64> {
-        let mut asking = self.clone();
-        asking.objectives = vec![Objective::LockMargin];
-        asking.judge(teeth, true).map(|j| j.lock_margin).filter(|m| m.is_finite())
     }
 
     /// For an empty result: every wish whose dropping alone makes it non-empty, and how far it must give.

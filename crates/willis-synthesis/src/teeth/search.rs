@@ -60,6 +60,19 @@ pub(crate) struct Judged {
     pub element_torque: Option<f64>,
 }
 
+/// What must be computed of tooth numbers beside ratios.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Needs {
+    pub speeds: bool,
+    pub ways: bool,
+    pub margin: bool,
+}
+
+impl Needs {
+    /// Everything.
+    pub const ALL: Self = Self { speeds: true, ways: true, margin: true };
+}
+
 /// How the space is walked through.
 enum Walked<'d> {
     /// A Wolfrom drive by itself: suns, and windows.
@@ -121,7 +134,7 @@ impl Design {
                         (self.0)(outer[0] * sums[0], outer[1] * sums[1]);
                     }
                 }
-                let units: Vec<Unit<'_>> = self.sets.iter().map(|s| Unit::new(&s.space, false)).collect();
+                let units = self.units(false);
                 let nest = Nest::new(&units, &self.nest_targets());
                 let outer = nest.outer();
                 nest.walk(0..outer, &willis::work::Serial, &mut Count(&mut add, self.sets.len()));
@@ -162,6 +175,19 @@ impl Design {
         self.walk(false, &mut |outer, walk| {
             walk(0..outer, &mut All(&mut found));
         });
+    }
+
+    /// The spaces of the sets, in order; sets with the same space share it.
+    fn units(&self, every_stage: bool) -> Vec<Unit<'_>> {
+        let mut units: Vec<Unit<'_>> = vec![];
+        for s in &self.sets {
+            let unit = match units.iter().find(|u| *u.space == s.space) {
+                Some(same) => same.clone(),
+                None => Unit::new(&s.space, every_stage),
+            };
+            units.push(unit);
+        }
+        units
     }
 
     fn nest_targets(&self) -> Vec<nest::Target> {
@@ -214,7 +240,7 @@ impl Design {
                 }
             }),
             Walked::Nest => {
-                let units: Vec<Unit<'_>> = self.sets.iter().map(|s| Unit::new(&s.space, every_stage)).collect();
+                let units = self.units(every_stage);
                 let nest = Nest::new(&units, &self.nest_targets());
                 then(nest.outer(), &|range, receive| {
                     nest.walk(range, &willis::work::Serial, &mut Each(receive, self.sets.len()));
@@ -280,14 +306,16 @@ impl Design {
         let mut product = 1.0;
         for s in &self.sets {
             let [sun, planet, _] = seeds(s.space.kind);
-            let own = size(&s.space.gears[sun]) * self.planets_between(&s.space, planet) * s.space.mismatch.len() as f64;
+            let own =
+                size(&s.space.gears[sun]) * self.planets_between(&s.space, planet) * s.space.mismatch.len() as f64;
             let second = match s.space.kind {
                 SetKind::Simple => 1.0,
                 SetKind::Wolfrom => self.planets_between(&s.space, 3) * s.space.mismatch.len() as f64,
                 SetKind::Ravigneaux => size(&s.space.gears[0]),
             };
             if own > 3e7 {
-                let message = format!("set `{}` has {own:.0} choices of its first gears; 30 million are the most", s.name);
+                let message =
+                    format!("set `{}` has {own:.0} choices of its first gears; 30 million are the most", s.name);
                 return Err(Diagnostic::new(Code::TooLong, format!("set[{}]", s.index), message)
                     .hint("give the ring an upper end, or narrow the ranges")
                     .into());
@@ -316,7 +344,12 @@ impl Design {
     ///
     /// # Errors
     /// The space is too large, or takes longer than the work's patience.
-    pub fn search(&self, mut progress: Progress, shard: Option<(u64, u64)>, work: &dyn Work) -> Result<Progress, Diagnostics> {
+    pub fn search(
+        &self,
+        mut progress: Progress,
+        shard: Option<(u64, u64)>,
+        work: &dyn Work,
+    ) -> Result<Progress, Diagnostics> {
         work.afford(&self.effort()?).map_err(Diagnostics::from)?;
         self.walk(true, &mut |outer, walk| {
             progress.of = outer as u64;
@@ -342,6 +375,7 @@ impl Design {
                     design: self,
                     part: Part { tally: self.empty_tally(), front: Front::default() },
                     single: self.sets.len() == 1,
+                    needs: self.needs(),
                 };
                 for run in runs(parts[k]) {
                     walk(run, &mut judge);
@@ -349,9 +383,10 @@ impl Design {
                 *results[k].lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(judge.part);
                 work.advance(parts[k].len() as u64);
             });
+            let needs = self.needs();
             let mut front = Front::default();
             for teeth in std::mem::take(&mut progress.front) {
-                if let Some(judged) = self.judge(&teeth, true) {
+                if let Some(judged) = self.judge(&teeth, needs) {
                     front.offer(self.point(&judged, &teeth), teeth);
                 }
             }
@@ -375,15 +410,17 @@ impl Design {
     pub fn merge(&self, a: Progress, b: Progress) -> Result<Progress, Diagnostics> {
         let overlap = a.done.iter().any(|x| b.done.iter().any(|y| x[0] < y[1] && y[0] < x[1]));
         if a.of != b.of || overlap || a.waterfall.len() != b.waterfall.len() {
-            let message = if overlap { "these parts of a search overlap" } else { "these are parts of different searches" };
+            let message =
+                if overlap { "these parts of a search overlap" } else { "these are parts of different searches" };
             return Err(Diagnostic::new(Code::Conflict, "", message).into());
         }
         let mut whole = a;
         add(&mut whole.waterfall, &b.waterfall);
         whole.done = joined(whole.done.into_iter().chain(b.done).collect());
+        let needs = self.needs();
         let mut front = Front::default();
         for teeth in whole.front.into_iter().chain(b.front) {
-            if let Some(judged) = self.judge(&teeth, true) {
+            if let Some(judged) = self.judge(&teeth, needs) {
                 front.offer(self.point(&judged, &teeth), teeth);
             }
         }
@@ -403,7 +440,9 @@ impl Design {
     }
 
     /// What tooth numbers amount to; none where the train is singular.
-    pub(crate) fn judge(&self, teeth: &Teeth, with_margin: bool) -> Option<Judged> {
+    pub(crate) fn judge(&self, teeth: &Teeth, what: Needs) -> Option<Judged> {
+        // Bands of several equilibria are those of Wolfrom drives; the others are certified when they are shown.
+        let quick = self.sets.len() > 1;
         let numbers: Vec<Option<&[i64]>> = (0..self.layout.kinds.len())
             .map(|k| {
                 let name = &self.layout.sets[k];
@@ -425,18 +464,26 @@ impl Design {
         for (state, target) in &self.targets {
             let state = &self.layout.states[*state];
             judged.error = judged.error.max(target.ratio.deviation(state.ratio.at(&y)));
+            if what == Needs::default() {
+                continue;
+            }
             let Some(point) = Point::new(&self.layout, state, &of) else {
                 // Equations repeat each other: the certified solver says what it can.
                 self.certified_ways(teeth, &target.state, &mut judged);
                 continue;
             };
-            judged.member_speed = judged.member_speed.max(point.largest_speed());
-            judged.planet_spin = judged.planet_spin.max(point.planet_spin(&of));
-            judged.element_torque = match (judged.element_torque, point.largest_element_torque()) {
-                (Some(a), Some(b)) => Some(a.max(b)),
-                (a, b) => a.or(b),
-            };
-            let (forward, backward) = (point.efficiency(true, 1.0), point.efficiency(false, 1.0));
+            if what.speeds {
+                judged.member_speed = judged.member_speed.max(point.largest_speed());
+                judged.planet_spin = judged.planet_spin.max(point.planet_spin(&of));
+                judged.element_torque = match (judged.element_torque, point.largest_element_torque()) {
+                    (Some(a), Some(b)) => Some(a.max(b)),
+                    (a, b) => a.or(b),
+                };
+            }
+            if !what.ways && !what.margin {
+                continue;
+            }
+            let (forward, backward) = (point.efficiency(true, 1.0, quick), point.efficiency(false, 1.0, quick));
             if forward == Way::Unclear || backward == Way::Unclear {
                 self.certified_ways(teeth, &target.state, &mut judged);
             } else {
@@ -450,15 +497,23 @@ impl Design {
                 judged.backward = judged.backward.min(value(&backward));
                 judged.self_locking |= backward == Way::Locks;
             }
-            if with_margin && (self.needs_margin() || self.require.lock_margin.is_some()) {
+            if what.margin {
                 judged.lock_margin = judged.lock_margin.min(point.lock_margin().unwrap_or(f64::INFINITY));
             }
         }
         Some(judged)
     }
 
-    pub(crate) fn needs_margin(&self) -> bool {
-        self.objectives.contains(&Objective::LockMargin)
+    /// What objectives, limits and demands need to know.
+    pub(crate) fn needs(&self) -> Needs {
+        let has = |all: &[Objective]| all.iter().any(|o| self.objectives.contains(o));
+        let (l, r) = (&self.limits, &self.require);
+        Needs {
+            speeds: has(&[Objective::PlanetSpin, Objective::MemberSpeed, Objective::ElementTorque])
+                || [l.planet_spin, l.member_speed, l.element_torque].iter().any(Option::is_some),
+            ways: has(&[Objective::Forward, Objective::Backward]) || r.forward.is_some() || r.backward.is_some(),
+            margin: has(&[Objective::LockMargin]) || r.lock_margin.is_some(),
+        }
     }
 
     /// The basic ratios at tooth numbers.
@@ -554,13 +609,14 @@ struct Judge<'d> {
     design: &'d Design,
     part: Part,
     single: bool,
+    needs: Needs,
 }
 
 impl Judge<'_> {
     /// Beyond the stages of teeth: judges, counts, and offers to the front.
     fn further(&mut self, from: usize, teeth: Teeth, trains: u64, designs: u64, by_planets: &[u64]) {
         let design = self.design;
-        let Some(judged) = design.judge(&teeth, true) else { return };
+        let Some(judged) = design.judge(&teeth, self.needs) else { return };
         for (stage, meets) in self.part.tally[from..].iter_mut().zip(design.meets(&judged)) {
             if !meets {
                 return;
@@ -714,10 +770,15 @@ mod tests {
                 for (k, target) in &design.targets {
                     let row = states.get(&target.state).unwrap();
                     let value = design.layout.states[*k].ratio.at(&y);
-                    assert!((value / row.value.unwrap() - 1.0).abs() < 1e-9, "{} {teeth:?} {}", design.name, target.state);
+                    assert!(
+                        (value / row.value.unwrap() - 1.0).abs() < 1e-9,
+                        "{} {teeth:?} {}",
+                        design.name,
+                        target.state
+                    );
                     let mut one = design.clone();
                     one.targets.retain(|t| t.0 == *k);
-                    let judged = one.judge(teeth, false).unwrap();
+                    let judged = one.judge(teeth, Needs { ways: true, ..Needs::default() }).unwrap();
                     for (direction, mine) in [(&row.drive, judged.forward), (&row.coast, judged.backward)] {
                         let expected = match direction.verdict {
                             Verdict::Unique => direction.efficiency.unwrap(),

@@ -81,11 +81,12 @@ fn distances(low: f64, high: f64) -> impl Iterator<Item = f64> {
 /// Shifts to try for a planet, those near zero first.
 fn trials(least: f64) -> impl Iterator<Item = f64> {
     let start = least.max(0.0);
-    (0..20).flat_map(move |k| {
-        let step = 0.05 * f64::from(k);
-        [start + step, start - step]
-    })
-    .filter(move |x| *x >= least && x.abs() <= MOST)
+    (0..20)
+        .flat_map(move |k| {
+            let step = 0.05 * f64::from(k);
+            [start + step, start - step]
+        })
+        .filter(move |x| *x >= least && x.abs() <= MOST)
 }
 
 /// Shifts of a sun, a planet and a ring on a common distance, with that distance doubled.
@@ -161,7 +162,9 @@ mod tests {
     #[test]
     fn a_mismatch_is_closed() {
         // ZF 6HP26, rear: large sun 38, ring 85: planets of 23 or 24 teeth.
-        for (z, off) in [([38, 23, 85], 1), ([38, 24, 85], -1), ([33, 19, 72], 1), ([30, 20, 72], 2), ([30, 20, 68], -2)] {
+        for (z, off) in
+            [([38, 23, 85], 1), ([38, 24, 85], -1), ([33, 19, 72], 1), ([30, 20, 72], 2), ([30, 20, 68], -2)]
+        {
             assert_eq!(z[2] - z[0] - 2 * z[1], off);
             let x = shifts(SetKind::Simple, &z, Rack::default()).unwrap_or_else(|| panic!("{z:?}"));
             let chain = willis::geometry::Chain {

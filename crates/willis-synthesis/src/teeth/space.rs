@@ -26,7 +26,7 @@ pub(crate) const MOST_PLANETS: usize = 16;
 /// let found = space.all().filter(|t| (29 * t[0]..=31 * t[0]).contains(&(10 * t[2]))).count();
 /// assert_eq!(found, 47);
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SetSpace {
     /// Its type.
     pub kind: SetKind,
@@ -76,7 +76,16 @@ impl SetSpace {
     /// A set with ranges, no rules, no mismatch and no gap.
     pub fn new(kind: SetKind, gears: Vec<Counts>, planets: Counts) -> Self {
         let planets = planets.within(1, 64).take(MOST_PLANETS).collect();
-        Self { kind, gears, planets, mismatch: vec![0], gap: Length::ZERO, rules: vec![], rack: Default::default(), ring_limit: None }
+        Self {
+            kind,
+            gears,
+            planets,
+            mismatch: vec![0],
+            gap: Length::ZERO,
+            rules: vec![],
+            rack: Default::default(),
+            ring_limit: None,
+        }
     }
 
     /// The same with these rules.
@@ -118,8 +127,7 @@ impl SetSpace {
         let seeds = self.seeds();
         let simple = self.kind == SetKind::Simple;
         seeds.into_iter().flat_map(move |seed| {
-            let items: Vec<Item> =
-                if simple { vec![self.item(seed.to_vec())] } else { self.second(seed) };
+            let items: Vec<Item> = if simple { vec![self.item(seed.to_vec())] } else { self.second(seed) };
             items.into_iter().filter(|i| i.passed.last().is_some_and(|p| *p != 0)).map(|i| i.teeth)
         })
     }
@@ -297,7 +305,9 @@ impl SetSpace {
         for seed in seeds {
             let mut items = vec![];
             if self.kind == SetKind::Simple {
-                items.extend(Some(self.item(seed.to_vec())).filter(|i| every_stage || i.is_admissible()));
+                if every_stage || self.admitted(&seed) != 0 {
+                    items.push(self.item(seed.to_vec()));
+                }
                 if items.is_empty() {
                     continue;
                 }

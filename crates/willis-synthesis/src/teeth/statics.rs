@@ -44,32 +44,64 @@ const MOST_PATTERNS: usize = 10;
 /// What is smaller than this part of the largest is not told from zero.
 const NOTHING: f64 = 1e-10;
 
-/// Solves a square system in place, the right side as the last column; none where it is singular.
-fn solve(m: &mut [Vec<f64>]) -> Option<Vec<f64>> {
-    let n = m.len();
-    for k in 0..n {
-        let pivot = (k..n).max_by(|a, b| m[*a][k].abs().total_cmp(&m[*b][k].abs()))?;
-        if m[pivot][k].abs() < 1e-13 {
-            return None;
-        }
-        m.swap(k, pivot);
-        let (above, below) = m.split_at_mut(k + 1);
-        let row = &above[k];
-        for other in below {
-            let factor = other[k] / row[k];
-            if factor != 0.0 {
-                for j in k..=n {
-                    other[j] -= factor * row[j];
+/// A square system with its right side: rows of `n + 1` numbers, on the stack where it is small.
+struct System {
+    n: usize,
+    small: [f64; SMALL],
+    large: Vec<f64>,
+}
+
+/// So many numbers stand on the stack.
+const SMALL: usize = 13 * 14;
+
+impl System {
+    fn new(n: usize) -> Self {
+        let large = if n * (n + 1) > SMALL { vec![0.0; n * (n + 1)] } else { vec![] };
+        Self { n, small: [0.0; SMALL], large }
+    }
+
+    fn numbers(&mut self) -> &mut [f64] {
+        if self.large.is_empty() { &mut self.small[..self.n * (self.n + 1)] } else { &mut self.large }
+    }
+
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let width = self.n + 1;
+        self.numbers()[row * width + column] += value;
+    }
+
+    /// The solution; none where the system is singular.
+    fn solve(mut self) -> Option<Vec<f64>> {
+        let (n, width) = (self.n, self.n + 1);
+        let m = self.numbers();
+        for k in 0..n {
+            let pivot = (k..n).max_by(|a, b| m[a * width + k].abs().total_cmp(&m[b * width + k].abs()))?;
+            if m[pivot * width + k].abs() < 1e-13 {
+                return None;
+            }
+            if pivot != k {
+                for j in k..width {
+                    m.swap(pivot * width + j, k * width + j);
+                }
+            }
+            let (above, below) = m.split_at_mut((k + 1) * width);
+            let row = &above[k * width..];
+            for other in below.chunks_exact_mut(width) {
+                let factor = other[k] / row[k];
+                if factor != 0.0 {
+                    for j in k..width {
+                        other[j] -= factor * row[j];
+                    }
                 }
             }
         }
+        let mut x = vec![0.0; n];
+        for k in (0..n).rev() {
+            let row = &m[k * width..(k + 1) * width];
+            let sum: f64 = (k + 1..n).map(|j| row[j] * x[j]).sum();
+            x[k] = (row[n] - sum) / row[k];
+        }
+        Some(x)
     }
-    let mut x = vec![0.0; n];
-    for k in (0..n).rev() {
-        let sum: f64 = (k + 1..n).map(|j| m[k][j] * x[j]).sum();
-        x[k] = (m[k][n] - sum) / m[k][k];
-    }
-    Some(x)
 }
 
 impl<'l> Point<'l> {
@@ -91,33 +123,27 @@ impl<'l> Point<'l> {
             })
             .collect();
         let n = state.nodes;
-        let mut rows: Vec<Vec<f64>> = vec![];
-        for (e, x) in layout.elements.iter().zip(&factors) {
-            let mut row = vec![0.0; n + 1];
-            let mut add = |m: usize, value: f64| {
-                if let Some(k) = state.node_of[m] {
-                    row[k] += value;
-                }
-            };
-            add(e.p, 1.0);
-            add(e.q, -x);
-            add(e.carrier, x - 1.0);
-            rows.push(row);
-        }
-        let unit = |k: usize, value: f64| {
-            let mut row = vec![0.0; n + 1];
-            row[k] = 1.0;
-            row[n] = value;
-            row
-        };
-        rows.push(unit(state.node_of[state.input]?, 1.0));
-        rows.extend(state.pins.iter().map(|k| unit(*k, 0.0)));
+        let node = |m: usize| state.node_of[m];
         // A set that rests as a whole says nothing.
-        rows.retain(|r| r.iter().any(|x| *x != 0.0));
-        if rows.len() != n {
+        let moves = |e: &super::layout::Element| [e.p, e.q, e.carrier].into_iter().any(|m| node(m).is_some());
+        let count = layout.elements.iter().filter(|e| moves(e)).count();
+        if count + 1 + state.pins.len() != n {
             return None;
         }
-        let nodes = solve(&mut rows)?;
+        let mut system = System::new(n);
+        for (row, (e, x)) in layout.elements.iter().zip(&factors).filter(|(e, _)| moves(e)).enumerate() {
+            for (m, value) in [(e.p, 1.0), (e.q, -x), (e.carrier, x - 1.0)] {
+                if let Some(k) = node(m) {
+                    system.add(row, k, value);
+                }
+            }
+        }
+        system.add(count, node(state.input)?, 1.0);
+        system.add(count, n, 1.0);
+        for (k, pin) in state.pins.iter().enumerate() {
+            system.add(count + 1 + k, *pin, 1.0);
+        }
+        let nodes = system.solve()?;
         let speed = |m: usize| state.node_of[m].map_or(0.0, |k| nodes[k]);
         let relative = layout.elements.iter().map(|e| speed(e.p) - speed(e.carrier)).collect();
         Some(Self { layout, state, factors, relative, speeds: Speeds { nodes } })
@@ -143,8 +169,9 @@ impl<'l> Point<'l> {
         self.layout.planets.iter().map(spin).fold(0.0, f64::max)
     }
 
-    /// Efficiencies: from input to output, and back. `factor` multiplies every mesh loss.
-    pub fn efficiency(&self, forward: bool, factor: f64) -> Way {
+    /// Efficiencies: from input to output, and back. `factor` multiplies every mesh loss. `quick` takes the first pattern
+    /// that agrees, beginning with that of a train without losses, and does not ask whether it is the only one.
+    pub fn efficiency(&self, forward: bool, factor: f64, quick: bool) -> Way {
         let moving: Vec<usize> = (0..self.factors.len()).filter(|e| self.relative[*e].abs() > 1e-9).collect();
         if moving.len() > MOST_PATTERNS {
             return Way::Unclear;
@@ -167,6 +194,25 @@ impl<'l> Point<'l> {
             })
             .collect();
         let torque = enters.signum();
+        if quick {
+            let mut pattern: Vec<bool> = vec![];
+            for _ in 0..8 {
+                let chosen = |e: usize| match pattern.get(e) {
+                    Some(p) if self.relative[e].abs() > 1e-9 => rho[e][usize::from(!p)],
+                    _ => 1.0,
+                };
+                let Some(x) = self.balance(&chosen, from, to, torque) else { return Way::Unclear };
+                let next: Vec<bool> = (0..self.factors.len()).map(|e| x[e] * self.relative[e] >= 0.0).collect();
+                if next == pattern {
+                    let out = -x[self.factors.len()] * leaves / (torque * enters);
+                    if out > 1e-12 {
+                        return Way::One(out);
+                    }
+                    break;
+                }
+                pattern = next;
+            }
+        }
         let mut found: Vec<f64> = vec![];
         let mut all: Vec<Vec<f64>> = vec![];
         for pattern in 0..1usize << moving.len() {
@@ -190,7 +236,9 @@ impl<'l> Point<'l> {
             if agrees {
                 let out = -x[self.factors.len()] * leaves / (torque * enters);
                 // Where both ends feed power in, nothing is driven.
-                if out > 1e-12 && !all.iter().any(|o| o.iter().zip(&x).all(|(a, b)| (a - b).abs() <= 1e-9 * (a.abs() + b.abs()))) {
+                if out > 1e-12
+                    && !all.iter().any(|o| o.iter().zip(&x).all(|(a, b)| (a - b).abs() <= 1e-9 * (a.abs() + b.abs())))
+                {
                     all.push(x);
                     found.push(out);
                 }
@@ -211,38 +259,39 @@ impl<'l> Point<'l> {
     /// `from`.
     fn balance(&self, rho: &dyn Fn(usize) -> f64, from: usize, to: usize, torque: f64) -> Option<Vec<f64>> {
         let (state, elements) = (self.state, &self.layout.elements);
-        let nodes: Vec<usize> = (0..state.nodes).filter(|n| !state.pins.contains(n)).collect();
-        let unknowns = elements.len() + 1;
-        let mut rows = vec![vec![0.0; unknowns + 1]; state.nodes];
-        let mut add = |m: usize, column: usize, value: f64| {
-            if let Some(n) = state.node_of[m] {
-                rows[n][column] += value;
-            }
-        };
-        for (k, e) in elements.iter().enumerate() {
-            let passed = self.factors[k] * rho(k);
-            add(e.p, k, 1.0);
-            add(e.q, k, -passed);
-            add(e.carrier, k, passed - 1.0);
-        }
-        add(to, unknowns - 1, -1.0);
-        add(from, unknowns, torque);
-        let mut rows: Vec<Vec<f64>> = nodes.into_iter().map(|n| std::mem::take(&mut rows[n])).collect();
-        if rows.len() == unknowns {
-            return solve(&mut rows);
-        }
         // Sets at rest as a whole, whose forces nothing settles and nothing asks for.
-        let idle: Vec<usize> = (0..elements.len()).filter(|k| rows.iter().all(|r| r[*k] == 0.0)).collect();
-        if rows.len() + idle.len() != unknowns {
+        let idle = |e: &super::layout::Element| [e.p, e.q, e.carrier].iter().all(|m| state.node_of[*m].is_none());
+        let acting: Vec<usize> = (0..elements.len()).filter(|k| !idle(&elements[*k])).collect();
+        let n = acting.len() + 1;
+        if state.nodes - state.pins.len() != n {
             return None;
         }
-        for row in &mut rows {
-            let kept = row.iter().enumerate().filter(|(k, _)| !idle.contains(k)).map(|(_, x)| *x).collect();
-            *row = kept;
+        // Rows: nodes without those that nothing settles.
+        let row = |m: usize| {
+            let node = state.node_of[m]?;
+            (!state.pins.contains(&node)).then(|| node - state.pins.iter().filter(|p| **p < node).count())
+        };
+        let mut system = System::new(n);
+        let mut add = |m: usize, column: usize, value: f64| {
+            if let Some(r) = row(m) {
+                system.add(r, column, value);
+            }
+        };
+        for (column, k) in acting.iter().enumerate() {
+            let (e, passed) = (&elements[*k], self.factors[*k] * rho(*k));
+            add(e.p, column, 1.0);
+            add(e.q, column, -passed);
+            add(e.carrier, column, passed - 1.0);
         }
-        let mut x = solve(&mut rows)?;
-        for k in idle {
-            x.insert(k, 0.0);
+        add(to, n - 1, -1.0);
+        add(from, n, torque);
+        let found = system.solve()?;
+        if n == elements.len() + 1 {
+            return Some(found);
+        }
+        let mut x = vec![0.0; elements.len() + 1];
+        for (k, value) in acting.iter().chain([&elements.len()]).zip(found) {
+            x[*k] = value;
         }
         Some(x)
     }
@@ -273,7 +322,7 @@ impl<'l> Point<'l> {
             return None;
         }
         let most = 0.999_999 / (1.0 - least);
-        let locks = |factor: f64| matches!(self.efficiency(false, factor), Way::Locks);
+        let locks = |factor: f64| matches!(self.efficiency(false, factor, false), Way::Locks);
         let (mut low, mut high) = (0.0, 1.0);
         while !locks(high) {
             if high >= most {
