@@ -80,7 +80,7 @@ impl DesignedSet {
 ///     carrier = "carrier"
 ///     mesh_efficiency = 0.99
 /// "#)?;
-/// assert_eq!(design.count().trains, 23);
+/// assert_eq!(design.count().trains, 19);
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -874,6 +874,9 @@ fn write(document: &mut DocumentMut, set: usize, path: &str, value: Value) {
         }
         if let Some(next) = table.get_mut(first) {
             within(next, rest, value);
+        }
+        if let Item::Value(Value::InlineTable(t)) = item {
+            t.fmt();
         }
     }
     let parts: Vec<&str> = path.split('.').collect();

@@ -14,18 +14,26 @@ use super::layout::SetKind;
 pub(crate) struct Rack {
     /// Pressure angle, rad.
     angle: f64,
+    /// Whether tips may reach beyond the mating involute.
+    long_tips: bool,
+    /// How far from gears without shift to look: steps of 0.05.
+    steps: u32,
 }
 
 impl Default for Rack {
     fn default() -> Self {
-        Self { angle: 20f64.to_radians() }
+        Self { angle: 20f64.to_radians(), long_tips: false, steps: 12 }
     }
 }
 
 impl Rack {
     /// The rack with a pressure angle, rad; 20 degrees where none is given.
     pub fn with_angle(angle: Option<f64>) -> Self {
-        angle.filter(|a| (0.1..0.7).contains(a)).map_or(Self::default(), |angle| Self { angle })
+        angle.filter(|a| (0.1..0.7).contains(a)).map_or(Self::default(), |angle| Self {
+            angle,
+            long_tips: false,
+            steps: 12,
+        })
     }
 
     /// The least shift without undercut: `x = 1 − z sin² α/2`.
@@ -56,10 +64,13 @@ fn data(rack: Rack, wheels: [Wheel; 2], twice_distance: Option<f64>) -> PairData
     }
 }
 
-/// Whether a pair with these shifts runs well.
+/// Whether a pair with these shifts runs well. Where that is not to be had, tips may be too long for the mating flank:
+/// they are then shortened when the gears are drawn in detail.
 fn sound(rack: Rack, wheels: [Wheel; 2], twice_distance: Option<f64>) -> bool {
-    let bad = |r: &Remark| {
-        !matches!(r, Remark::PathShortened { .. } | Remark::LowContactRatio { .. } | Remark::BelowForm { .. })
+    let bad = |r: &Remark| match r {
+        Remark::LowContactRatio { .. } => false,
+        Remark::PathShortened { .. } | Remark::BelowForm { .. } => !rack.long_tips,
+        _ => true,
     };
     Pair::new(&data(rack, wheels, twice_distance)).is_ok_and(|p| !p.remarks().iter().any(bad))
 }
@@ -70,18 +81,18 @@ fn other(rack: Rack, first: Wheel, second: Wheel, twice_distance: f64) -> Option
 }
 
 /// Distances to try, in modules and doubled, nearest to the larger of those without shift first.
-fn distances(low: f64, high: f64) -> impl Iterator<Item = f64> {
+fn distances(rack: Rack, low: f64, high: f64) -> impl Iterator<Item = f64> {
     let start = low.max(high);
-    (0..40).flat_map(move |k| {
+    (0..2 * rack.steps - 1).flat_map(move |k| {
         let step = 0.05 * f64::from(k);
         [start + step, start - step]
     })
 }
 
 /// Shifts to try for a planet, those near zero first.
-fn trials(least: f64) -> impl Iterator<Item = f64> {
+fn trials(rack: Rack, least: f64) -> impl Iterator<Item = f64> {
     let start = least.max(0.0);
-    (0..20)
+    (0..rack.steps)
         .flat_map(move |k| {
             let step = 0.05 * f64::from(k);
             [start + step, start - step]
@@ -91,8 +102,8 @@ fn trials(least: f64) -> impl Iterator<Item = f64> {
 
 /// Shifts of a sun, a planet and a ring on a common distance, with that distance doubled.
 fn chain(rack: Rack, [s, p, r]: [i64; 3]) -> Option<([f64; 3], f64)> {
-    for a in distances((s + p) as f64, (r - p) as f64) {
-        for x_p in trials(rack.least(p)) {
+    for a in distances(rack, (s + p) as f64, (r - p) as f64) {
+        for x_p in trials(rack, rack.least(p)) {
             let planet = || wheel(p, false, x_p);
             let Some(x_s) = other(rack, planet(), wheel(s, false, 0.0), a) else { break };
             let Some(x_r) = other(rack, planet(), wheel(r, true, 0.0), a) else { break };
@@ -114,12 +125,18 @@ fn chain(rack: Rack, [s, p, r]: [i64; 3]) -> Option<([f64; 3], f64)> {
 ///
 /// Numbers are rounded to 10⁻⁶; the ring takes up what is left.
 pub(crate) fn shifts(kind: SetKind, z: &[i64], rack: Rack) -> Option<Vec<f64>> {
+    // Gears without shift, if nothing forbids them; then sound ones; then those with tips to be shortened.
+    let passes = [(1, true), (12, false), (20, true)];
+    passes.into_iter().find_map(|(steps, long_tips)| choose(kind, z, Rack { steps, long_tips, ..rack }))
+}
+
+fn choose(kind: SetKind, z: &[i64], rack: Rack) -> Option<Vec<f64>> {
     let found = match kind {
         SetKind::Simple => chain(rack, [z[0], z[1], z[2]])?.0.to_vec(),
         SetKind::Wolfrom => {
             // The second step turns on the same distance, whose first choice may not suit it.
             let (first, a) = chain(rack, [z[0], z[1], z[2]])?;
-            let second = trials(rack.least(z[3])).find_map(|x| {
+            let second = trials(rack, rack.least(z[3])).find_map(|x| {
                 let planet = || wheel(z[3], false, x);
                 let ring = other(rack, planet(), wheel(z[4], true, 0.0), a)?;
                 sound(rack, [planet(), wheel(z[4], true, ring)], Some(a)).then_some([x, ring])
@@ -132,17 +149,17 @@ pub(crate) fn shifts(kind: SetKind, z: &[i64], rack: Rack) -> Option<Vec<f64>> {
             // The distances of the short planets follow from their shifts.
             match z.get(4) {
                 Some(short) => {
-                    let (x_short, x_small) = trials(rack.least(*short)).find_map(|x| {
+                    let (x_short, x_small) = trials(rack, rack.least(*short)).find_map(|x| {
                         let planet = || wheel(*short, false, x);
                         let suits = sound(rack, [planet(), wheel(z[2], false, long)], None);
-                        let small = trials(rack.least(z[0]))
+                        let small = trials(rack, rack.least(z[0]))
                             .find(|y| suits && sound(rack, [wheel(z[0], false, *y), planet()], None))?;
                         Some((x, small))
                     })?;
                     all[0] = x_small;
                     all.push(x_short);
                 }
-                None => all[0] = trials(rack.least(z[0])).next()?,
+                None => all[0] = trials(rack, rack.least(z[0])).next()?,
             }
             all
         }

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::fit::{self, Length, Ravigneaux, assembles_across, assembles_simple, compare, gcd, planets_clear, reduced};
+use super::fit::{self, Length, Ravigneaux, assembles_simple, compare, gcd, planets_clear, reduced};
 use super::layout::SetKind;
 use super::range::{Counts, MOST_TEETH};
 use super::rule::Rule;
@@ -270,7 +270,13 @@ impl SetSpace {
         match (self.kind, rule) {
             (SetKind::Simple, Rule::Assembly) => each(&|n| assembles_simple(z[0], z[2], n)),
             (SetKind::Wolfrom, Rule::Assembly) => {
-                each(&|n| assembles_simple(z[0], z[2], n) && assembles_across((-z[2], z[1]), (-z[4], z[3]), n))
+                // As `assembles_across`, with the common divisor found once.
+                let sum = z[0] + z[2];
+                if self.planets.iter().all(|n| sum % n != 0) {
+                    return 0;
+                }
+                let across = (z[2] * z[3] - z[4] * z[1]) / gcd(z[1], z[3]);
+                each(&|n| sum % n == 0 && across % n == 0)
             }
             (SetKind::Ravigneaux, Rule::Assembly) => each(&|n| Ravigneaux::of(z).assembles(n)),
             (SetKind::Simple, Rule::Clearance) => each(&|n| planets_clear((z[0] + z[2], 2), n, z[1], self.gap)),
