@@ -102,7 +102,7 @@ pub struct Design {
 }
 
 /// Keys of the table `[design]`.
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 11] = [
     "tolerance",
     "planets",
     "mismatch",
@@ -114,7 +114,6 @@ const KEYS: [&str; 12] = [
     "minimize",
     "maximize",
     "target",
-    "input_speed",
 ];
 
 /// Reads with places.
@@ -190,13 +189,13 @@ impl Reader<'_> {
         match read {
             Ok(counts) => Some(counts),
             Err(d) => {
-                self.report(d, place, item.span());
+                self.report(*d, place, item.span());
                 None
             }
         }
     }
 
-    fn names<T: std::str::FromStr<Err = Diagnostic>>(&mut self, place: &str, item: &Item) -> Vec<T> {
+    fn names<T: std::str::FromStr<Err = Box<Diagnostic>>>(&mut self, place: &str, item: &Item) -> Vec<T> {
         let Some(list) = item.as_array() else {
             self.kind(place, item, "a list of names");
             return vec![];
@@ -205,7 +204,7 @@ impl Reader<'_> {
         for value in list {
             match value.as_str().map(str::parse::<T>) {
                 Some(Ok(t)) => found.push(t),
-                Some(Err(d)) => self.report(d, place, value.span()),
+                Some(Err(d)) => self.report(*d, place, value.span()),
                 None => self.kind(place, item, "a list of names"),
             }
         }

@@ -220,7 +220,7 @@ impl Layout {
         for state in if count == 0 { vec![None] } else { (0..count).map(Some).collect() } {
             match layout.state(train, state, &ties, &inner) {
                 Ok(compiled) => layout.states.push(compiled),
-                Err(d) => wrong.push(d),
+                Err(d) => wrong.push(*d),
             }
         }
         if wrong.has_errors() { Err(wrong) } else { Ok(layout) }
@@ -232,21 +232,20 @@ impl Layout {
         state: Option<usize>,
         ties: &[Tie],
         inner: &[usize],
-    ) -> Result<LayoutState, Diagnostic> {
+    ) -> Result<LayoutState, Box<Diagnostic>> {
         let (name, engaged) = match state {
             Some(k) => (train.states()[k].name.clone(), train.states()[k].engaged.clone()),
             None => ("as drawn".to_owned(), vec![]),
         };
         let unfit = |what: &str| {
-            Diagnostic::new(
-                Code::Unfit,
-                "",
-                format!("state `{name}` {what}, so that it has no ratio to be designed for"),
+            let message = format!("state `{name}` {what}, so that it has no ratio to be designed for");
+            Box::new(
+                Diagnostic::new(Code::Unfit, "", message)
+                    .hint("look at it with `willis analyze`, and correct or remove it"),
             )
-            .hint("look at it with `willis analyze`, and correct or remove it")
         };
         let [Some(input), Some(output)] = train.ends(state) else {
-            return Err(unfit("has no input and output").hint("list `terminals`, the input first"));
+            return Err(unfit("has no input and output"));
         };
         // Members that turn as one.
         let members = train.members().len();

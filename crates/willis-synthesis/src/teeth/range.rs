@@ -130,12 +130,14 @@ impl fmt::Display for Counts {
 }
 
 impl FromStr for Counts {
-    type Err = Diagnostic;
+    type Err = Box<Diagnostic>;
 
-    fn from_str(text: &str) -> Result<Self, Diagnostic> {
+    fn from_str(text: &str) -> Result<Self, Box<Diagnostic>> {
         let wrong = |message: String| {
-            Diagnostic::new(Code::OutOfRange, "", message)
-                .hint("write a number, `18..60`, `12..`, `..120`, `18..60 odd`, or a list such as `23, 29, 31`")
+            Box::new(
+                Diagnostic::new(Code::OutOfRange, "", message)
+                    .hint("write a number, `18..60`, `12..`, `..120`, `18..60 odd`, or a list such as `23, 29, 31`"),
+            )
         };
         let whole = text.trim();
         if whole.is_empty() || whole.len() > 1000 {
@@ -146,7 +148,7 @@ impl FromStr for Counts {
             Some((body, "even")) => (body.trim_end(), Some(0)),
             _ => (whole, None),
         };
-        let number = |part: &str| -> Result<i64, Diagnostic> {
+        let number = |part: &str| -> Result<i64, Box<Diagnostic>> {
             match part.trim().parse::<i64>() {
                 Ok(n) if (-MOST_TEETH..=MOST_TEETH).contains(&n) => Ok(n),
                 Ok(n) => Err(wrong(format!("{n} in `{whole}` is beyond ±{MOST_TEETH}"))),
@@ -154,7 +156,7 @@ impl FromStr for Counts {
             }
         };
         let kind = if let Some((from, to)) = body.split_once("..") {
-            let end = |part: &str| -> Result<Option<i64>, Diagnostic> {
+            let end = |part: &str| -> Result<Option<i64>, Box<Diagnostic>> {
                 let part = part.trim().trim_start_matches('=');
                 if part.is_empty() { Ok(None) } else { number(part).map(Some) }
             };

@@ -103,6 +103,9 @@ impl Design {
             d = d.hint("change its shift elements, or drop the target");
             diagnostics.push(d);
         }
+        if complete && progress.waterfall.first().is_some_and(|s| s.trains == 0) && diagnostics.is_empty() {
+            diagnostics.extend(self.contradictions());
+        }
         if rows.iter().any(|r| !r.certified) {
             let message = "the efficiency of some rows is not proved to be the only one; see their verdicts";
             diagnostics.push(Diagnostic::new(Code::NotEnumerated, "", message));
@@ -122,6 +125,33 @@ impl Design {
             relaxations,
             diagnostics,
         }
+    }
+
+    /// Ratios that no basic ratios of these ranges reach together: single ones, else pairs, else all.
+    fn contradictions(&self) -> Option<Diagnostic> {
+        let mut bounds = vec![[1.0, 1.0]; self.layout.variables];
+        for (k, name) in self.layout.sets.iter().enumerate() {
+            if let Some(s) = self.sets.iter().find(|s| s.name == *name) {
+                bounds[self.layout.first[k]..][..s.space.kind.variables()].copy_from_slice(&s.space.bounds()?);
+            }
+        }
+        let all: Vec<usize> = (0..self.targets.len()).collect();
+        let mut groups: Vec<Vec<usize>> = all.iter().map(|k| vec![*k]).collect();
+        groups.extend(all.iter().flat_map(|a| all[a + 1..].iter().map(|b| vec![*a, *b])));
+        groups.push(all.clone());
+        let excluded = |group: &Vec<usize>| {
+            let of = |k: &usize| (&self.layout.states[self.targets[*k].0].ratio, &self.targets[*k].1.ratio);
+            super::contradiction::excluded(&group.iter().map(of).collect::<Vec<_>>(), &bounds)
+        };
+        let group = groups.iter().find(|g| excluded(g))?;
+        let names: Vec<String> = group.iter().map(|k| format!("`{}`", self.targets[*k].1.state)).collect();
+        let message = match names.len() {
+            1 => format!("the ratio of state {} cannot be reached with teeth of these ranges", names[0]),
+            _ => format!("the ratios of the states {} contradict each other, whatever the teeth are", names.join(", ")),
+        };
+        let place = format!("design.target[{}].ratio", group[group.len() - 1]);
+        let hint = "widen a window, or drop one of the ratios: each basic ratio of a set fixes only one of them";
+        Some(Diagnostic::new(Code::Implausible, place, message).hint(hint))
     }
 
     fn statement(&self, space: &Space, complete: bool, done: u64, of: u64, left: u64) -> String {
@@ -321,7 +351,7 @@ impl Design {
             .map(|s| {
                 let own = row.sets.get(&s.name);
                 let of = |gear: &&str| own.and_then(|o| o.teeth.get(gear)).copied().unwrap_or(1);
-                s.space.kind.gears().iter().map(|g| of(&g)).collect()
+                s.space.kind.gears().iter().map(of).collect()
             })
             .collect();
         self.text_of(&teeth, Some(row))

@@ -106,14 +106,15 @@ impl fmt::Display for Rule {
 }
 
 impl FromStr for Rule {
-    type Err = Diagnostic;
+    type Err = Box<Diagnostic>;
 
-    fn from_str(name: &str) -> Result<Self, Diagnostic> {
+    fn from_str(name: &str) -> Result<Self, Box<Diagnostic>> {
         Self::ALL.into_iter().find(|r| r.name() == name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name);
             Diagnostic::new(Code::UnknownName, "design.rules", format!("there is no rule `{name}`"))
                 .suggest(name, names)
                 .hint(format!("the rules are: {}", names.join(", ")))
+                .into()
         })
     }
 }

@@ -87,6 +87,9 @@ struct Part {
     front: Front<Teeth>,
 }
 
+/// Walks through some steps of the outermost loop.
+type Steps<'s> = dyn Fn(std::ops::Range<usize>, &mut dyn Receive) + Sync + 's;
+
 /// Receives what the loops find.
 trait Receive {
     /// Tooth numbers of the only set.
@@ -211,11 +214,7 @@ impl Design {
     }
 
     /// Prepares the loops, and hands over how many steps the outermost has and how to walk through some of them.
-    fn walk(
-        &self,
-        every_stage: bool,
-        then: &mut dyn FnMut(usize, &(dyn Fn(std::ops::Range<usize>, &mut dyn Receive) + Sync)),
-    ) {
+    fn walk(&self, every_stage: bool, then: &mut dyn FnMut(usize, &Steps<'_>)) {
         struct Each<'a>(&'a mut dyn Receive, usize);
         impl nest::Sink for Each<'_> {
             fn found(&mut self, chosen: &Chosen<'_, '_>, last: &[Group]) {

@@ -333,6 +333,15 @@ impl SetSpace {
         groups
     }
 
+    /// Bounds of its variables; none where it has no teeth.
+    pub(crate) fn bounds(&self) -> Option<Vec<[f64; 2]>> {
+        let of = |z: &[i64; 3]| z[2] as f64 / z[0] as f64;
+        let seeds = self.seeds();
+        let first = seeds.iter().map(of).fold([f64::INFINITY, 0.0], |b: [f64; 2], y| [b[0].min(y), b[1].max(y)]);
+        let all = if self.kind.variables() == 1 { vec![first] } else { vec![first, self.second_bounds()] };
+        (!seeds.is_empty() && all.iter().all(|b| b[0] > 0.0 && b[1].is_finite())).then_some(all)
+    }
+
     /// Bounds of the second variable.
     pub(crate) fn second_bounds(&self) -> [f64; 2] {
         let least = |k: usize| self.gear(k).least().unwrap_or(1).max(1) as f64;

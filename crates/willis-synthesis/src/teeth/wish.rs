@@ -71,14 +71,15 @@ impl fmt::Display for Objective {
 }
 
 impl FromStr for Objective {
-    type Err = Diagnostic;
+    type Err = Box<Diagnostic>;
 
-    fn from_str(name: &str) -> Result<Self, Diagnostic> {
+    fn from_str(name: &str) -> Result<Self, Box<Diagnostic>> {
         Self::ALL.into_iter().find(|o| o.name() == name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name);
             Diagnostic::new(Code::UnknownName, "", format!("`{name}` is nothing that a design is judged by"))
                 .suggest(name, names)
                 .hint(format!("designs are judged by: {}", names.join(", ")))
+                .into()
         })
     }
 }

@@ -153,7 +153,7 @@ fn wolfrom_drives() {
     }
 }
 
-const AOD: &str = r#"
+pub const AOD: &str = r#"
 format = 1
 name = "Ravigneaux"
 members = ["small", "large", "carrier", "ring"]

@@ -108,3 +108,33 @@ fn what_is_wrong_is_said_with_its_place() {
     let e = read(&huge).answer(&Request::default(), &Serial).unwrap_err();
     assert_eq!(e.iter().next().unwrap().code.as_str(), "E212");
 }
+
+#[test]
+fn contradicting_ratios_are_named_at_once() {
+    // Four ratios of a Ravigneaux set come from two numbers.
+    let wish = "[design]\ntarget = [{ state = \"1\", ratio = 2.4 }, { state = \"O\", ratio = 0.6667 }, \
+                { state = \"R\", ratio = -3.0 }]";
+    let ranges = ["small_sun", "large_sun", "long_planet", "ring"].map(|g| (format!("P1.{g}.teeth"), "15..100"));
+    let ranges: Vec<(&str, &str)> = ranges.iter().map(|(p, r)| (p.as_str(), *r)).collect();
+    let text = crate::layouts::example(crate::counts::AOD, wish, &ranges);
+    let answer = read(&text).answer(&Request::default(), &Serial).unwrap();
+    assert!(answer.rows.is_empty());
+    assert!(
+        answer.diagnostics.iter().any(|d| d.message.contains("states `O`, `R` contradict each other")),
+        "{:?}",
+        answer.diagnostics
+    );
+    assert!(answer.relaxations.iter().any(|r| r.wish == "ratio of state R"), "{:?}", answer.relaxations);
+    // A state that no teeth can change.
+    let text = simple("12..30", "..90", "target = [{ state = \"direct\", ratio = 1.2 }]").replace(
+        "[[set]]",
+        "[[shift_element]]\nname = \"L\"\nkind = \"clutch\"\nmembers = [\"sun\", \"carrier\"]\n\
+         [[state]]\nname = \"direct\"\nengaged = [\"L\"]\n[[set]]",
+    );
+    let text = text
+        .replace("member = \"frame\"", "member = \"ring\"")
+        .replace("[\"sun\", \"carrier\"]\nterm", "[\"sun\", \"carrier\", \"ring\"]\nterm");
+    let answer = read(&text).answer(&Request::default(), &Serial).unwrap();
+    let said = &answer.diagnostics[0].message;
+    assert_eq!(said, "state `direct` has the ratio 1 whatever the teeth are; 6/5 cannot be reached");
+}
