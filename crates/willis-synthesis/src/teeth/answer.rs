@@ -1,0 +1,200 @@
+//! What came of a design: the results contract `willis-design-1`.
+
+use serde::{Deserialize, Serialize};
+use willis::analysis::Verdict;
+use willis::contract::{Contract, Format};
+use willis::diagnostic::Diagnostic;
+use willis::exact::Rational;
+use willis::named::Named;
+
+use super::fit::Phase;
+use super::wish::Objective;
+
+/// All trains that satisfy a wish, counted, and the best of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct DesignAnswer {
+    /// Name and version of this contract.
+    pub format: Format<Self>,
+    /// The name in the file.
+    pub name: String,
+    /// What was wished, in words: it is repeated in the notes of every train.
+    pub wish: String,
+    /// What was searched.
+    pub space: Space,
+    /// What is known about completeness.
+    pub completeness: Completeness,
+    /// How many are left after each condition, in the order of the conditions.
+    pub waterfall: Vec<Stage>,
+    /// What rows are judged by; the first one is that by which they are sorted unless another was asked for.
+    pub objectives: Vec<Objective>,
+    /// How many trains no other one beats in every objective.
+    pub front: u64,
+    /// The trains shown: those of the front, as many as were asked for.
+    pub rows: Vec<DesignRow>,
+    /// For an empty result: the wishes that alone keep it empty.
+    pub relaxations: Vec<Relaxation>,
+    /// Warnings and notes.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Contract for DesignAnswer {
+    const FORMAT: &'static str = "willis-design-1";
+}
+
+/// The space of tooth numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Space {
+    /// By set, what its tooth numbers may be.
+    pub sets: Named<SetRange>,
+    /// How many choices of coaxial tooth numbers and numbers of planets there are.
+    pub candidates: f64,
+}
+
+/// The ranges of a set.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SetRange {
+    /// By gear, its range as written.
+    pub teeth: Named<String>,
+    /// Numbers of planets.
+    pub planets: Vec<i64>,
+    /// Mismatches allowed.
+    pub mismatch: Vec<i64>,
+    /// Coaxial tooth numbers.
+    pub trains: f64,
+}
+
+/// Whether that is all.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Completeness {
+    /// Whether the whole space was examined, or excluded by exact bounds.
+    pub complete: bool,
+    /// The share that was: steps of the outermost loop done, of all.
+    pub done: u64,
+    /// All steps of the outermost loop.
+    pub of: u64,
+    /// The same in words.
+    pub statement: String,
+}
+
+/// How many are left after a condition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Stage {
+    /// The condition: `ratio`, a rule, a limit.
+    pub condition: String,
+    /// Tooth numbers left, with some number of planets; short planets of Ravigneaux sets are not counted apart.
+    pub trains: u64,
+    /// The same with every number of planets and every short planet counted.
+    pub designs: u64,
+    /// Designs by number of planets, where only one set is designed.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub by_planets: Named<u64>,
+}
+
+/// A train.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct DesignRow {
+    /// Its number in the list, from 1.
+    pub number: u64,
+    /// Designed sets.
+    pub sets: Named<SetRow>,
+    /// States with a target.
+    pub states: Named<StateRow>,
+    /// Largest relative deviation from a target.
+    pub error: f64,
+    /// Reference diameter of the largest ring, m; absent where no module is given.
+    pub ring_diameter_m: Option<f64>,
+    /// Teeth of the largest ring.
+    pub ring_teeth: i64,
+    /// Least efficiency from input to output over the targets; absent where friction locks or it is not known.
+    pub forward: Option<f64>,
+    /// Least efficiency from output to input.
+    pub backward: Option<f64>,
+    /// Whether friction locks the output in some target: power cannot flow from it to the input.
+    pub self_locking: bool,
+    /// The factor on all mesh losses at which the output can no longer drive the input, least of the targets; 1 is at the
+    /// limit, below 1 locks. Absent where no loss locks.
+    pub lock_margin: Option<f64>,
+    /// Largest speed of a planet on its pin, as a multiple of the input's.
+    pub planet_spin: f64,
+    /// Largest speed of a member, as a multiple of the input's.
+    pub member_speed: f64,
+    /// Largest torque of a closed shift element without losses, as a multiple of the input's.
+    pub element_torque: Option<f64>,
+    /// Whether all its efficiencies come from the certified solver and are proved unique.
+    pub certified: bool,
+}
+
+/// A set of a train.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SetRow {
+    /// Tooth numbers by gear.
+    pub teeth: Named<i64>,
+    /// Numbers of planets that follow all rules.
+    pub planets: Vec<i64>,
+    /// The one of them that the train file has.
+    pub chosen: i64,
+    /// Whether meshing gears have no common divisor.
+    pub hunting: bool,
+    /// The phase of the meshes at the sun, with the chosen number of planets.
+    pub phase: Phase,
+    /// Profile shifts by gear, positive outward; absent where there are none that suit.
+    pub shifts: Option<Named<f64>>,
+}
+
+/// A state of a train.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct StateRow {
+    /// Its ratio, exactly.
+    pub ratio: Option<Rational>,
+    /// The same as a decimal.
+    pub value: f64,
+    /// What was aimed at.
+    pub target: Rational,
+    /// Relative deviation.
+    pub error: f64,
+    /// Efficiency from input to output, where it is unique.
+    pub forward: Option<f64>,
+    /// The same exactly, where the efficiencies of the meshes are given.
+    pub forward_exact: Option<Rational>,
+    /// What can be said about that direction.
+    pub forward_verdict: Verdict,
+    /// Efficiency from output to input, where it is unique.
+    pub backward: Option<f64>,
+    /// The same exactly.
+    pub backward_exact: Option<Rational>,
+    /// What can be said about that direction; `locked` is self-locking.
+    pub backward_verdict: Verdict,
+}
+
+/// A wish without which something would be found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Relaxation {
+    /// The wish: a rule, a limit, a demand, or `ratio of state 1`.
+    pub wish: String,
+    /// What it is now, where it is a number.
+    pub now: Option<f64>,
+    /// What it must become for the first train, everything else unchanged; absent where it must be dropped.
+    pub needed: Option<f64>,
+    /// How many trains satisfy all the other wishes.
+    pub trains: u64,
+    /// The same in words.
+    pub words: String,
+}

@@ -1,0 +1,892 @@
+//! Design files: train files in which teeth and planets are ranges, with a table `[design]`.
+//!
+//! ```toml
+//! [design]
+//! tolerance = 0.01                       # of every ratio, unless a target has its own
+//! planets = "3..5"                       # of every set that does not say it
+//! mismatch = [-1, 0, 1]                  # r - s - 2 p and the like; default 0
+//! rules = ["assembly", "clearance", "hunting"]     # default: assembly, clearance
+//! gap = "0.5"                            # between tips of planets, in modules; default 0
+//! module = "0.5 mm"                      # of sets without a geometry
+//! limits = { ring_diameter = "90 mm", planet_spin = 5, member_speed = 3.0, element_torque = 2.5 }
+//! require = { forward = 0.7, backward = 0.6, lock_margin = 1.5 }
+//! minimize = ["ring_diameter"]
+//! maximize = ["forward", "backward"]
+//!
+//! [[design.target]]
+//! state = "1"                            # not needed where the train has no states
+//! ratio = 4.70                           # or [4.6, 4.8]; `any_sign = true` takes both signs
+//! tolerance = 0.02
+//! ```
+//!
+//! A set is designed when one of its tooth numbers is a text (`"18..60"`, `"18.. odd"`) or a list. Sets with sun and ring,
+//! stepped sets with one sun and two rings, and Ravigneaux sets can be; other sets keep the teeth they have.
+
+use std::ops::Range;
+
+use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
+use willis::Model;
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::exact::Rational;
+use willis::units;
+
+use super::fit::Length;
+use super::layout::{Layout, SetKind};
+use super::range::Counts;
+use super::rule::Rule;
+use super::shift::Rack;
+use super::space::SetSpace;
+use super::wish::{Limits, Objective, Ratio, Requirements, Target};
+
+/// A set of a design file.
+#[derive(Clone, Debug)]
+pub(crate) struct DesignedSet {
+    /// Its position among the sets of the file.
+    pub index: usize,
+    pub name: String,
+    pub space: SetSpace,
+    /// Module, m.
+    pub module: Option<f64>,
+    /// Whether the set has a table `geometry`, so that profile shifts can be written.
+    pub has_geometry: bool,
+}
+
+impl DesignedSet {
+    /// Profile shifts of its gears, with the short planet of a Ravigneaux set; none where no choice is sound.
+    pub fn shifts(&self, teeth: &[i64], short: Option<i64>) -> Option<Vec<f64>> {
+        let all: Vec<i64> = teeth.iter().copied().chain(short).collect();
+        super::shift::shifts(self.space.kind, &all, self.space.rack)
+    }
+}
+
+/// A design file, read and checked: what a train must do, and what its teeth may be.
+///
+/// # Example
+/// ```
+/// use willis_synthesis::teeth::Design;
+///
+/// let design = Design::from_toml(r#"
+///     format = 1
+///     name = "reducer"
+///     members = ["sun", "carrier"]
+///     terminals = ["sun", "carrier"]
+///     design = { tolerance = 0.01, target = [{ ratio = 4.0 }] }
+///
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "sun", teeth = "15..40" }
+///     planet = { teeth = "15..40", count = "3..4" }
+///     ring = { member = "frame", teeth = "..100" }
+///     carrier = "carrier"
+///     mesh_efficiency = 0.99
+/// "#)?;
+/// assert_eq!(design.count().trains, 19);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Design {
+    pub(crate) template: DocumentMut,
+    pub(crate) text: String,
+    pub(crate) name: String,
+    pub(crate) sets: Vec<DesignedSet>,
+    pub(crate) layout: Layout,
+    /// With the number of the state in the layout.
+    pub(crate) targets: Vec<(usize, Target)>,
+    pub(crate) limits: Limits,
+    pub(crate) require: Requirements,
+    /// What designs are judged by; the first one sorts rows.
+    pub(crate) objectives: Vec<Objective>,
+    pub(crate) rules: Vec<Rule>,
+    /// Whether every designed set has a module, so that diameters are metres.
+    pub(crate) metric: bool,
+}
+
+/// Keys of the table `[design]`.
+const KEYS: [&str; 11] = [
+    "tolerance",
+    "planets",
+    "mismatch",
+    "rules",
+    "gap",
+    "module",
+    "limits",
+    "require",
+    "minimize",
+    "maximize",
+    "target",
+];
+
+/// Reads with places.
+struct Reader<'t> {
+    text: &'t str,
+    wrong: Diagnostics,
+}
+
+impl Reader<'_> {
+    fn report(&mut self, mut d: Diagnostic, place: &str, span: Option<Range<usize>>) {
+        if d.place.is_empty() || !place.is_empty() {
+            d.place = place.to_owned();
+        }
+        d.span = d.span.or(span.map(Into::into));
+        self.wrong.push(d);
+    }
+
+    fn kind(&mut self, place: &str, item: &Item, what: &str) {
+        let found = item.type_name();
+        let d =
+            Diagnostic::new(Code::WrongType, place, format!("`{place}` takes {what}, not a value of the type {found}"));
+        self.report(d, place, item.span());
+    }
+
+    /// A number or a text of one, exactly.
+    fn rational(&mut self, place: &str, item: &Item) -> Option<Rational> {
+        let value = match item.as_value() {
+            Some(Value::Integer(i)) => Some(Rational::from(*i.value())),
+            // As it is written, not the nearest binary number.
+            Some(Value::Float(f)) => match f.as_repr().and_then(|r| r.as_raw().as_str()) {
+                Some(raw) => raw.trim().parse().ok(),
+                None => Rational::from_f64(*f.value()),
+            },
+            Some(Value::String(s)) => s.value().trim().parse().ok(),
+            _ => None,
+        };
+        if value.is_none() {
+            self.kind(place, item, "a number such as 4.7 or \"14/3\"");
+        }
+        value
+    }
+
+    fn positive(&mut self, place: &str, item: &Item) -> Option<f64> {
+        let value = self.rational(place, item)?;
+        if value.sign() <= 0 {
+            let d = Diagnostic::new(Code::OutOfRange, place, format!("`{place}` is {value}; it must be above 0"));
+            self.report(d, place, item.span());
+            return None;
+        }
+        Some(value.to_f64())
+    }
+
+    fn counts(&mut self, place: &str, item: &Item) -> Option<Counts> {
+        let read = match item.as_value() {
+            Some(Value::Integer(i)) => Ok(Counts::range(*i.value(), *i.value())),
+            Some(Value::String(s)) => s.value().parse(),
+            Some(Value::Array(a)) => {
+                let list: Option<Vec<i64>> = a.iter().map(Value::as_integer).collect();
+                match list {
+                    Some(list) if !list.is_empty() => Ok(Counts::list(list)),
+                    Some(_) => "".parse(),
+                    None => {
+                        self.kind(place, item, "a list of whole numbers");
+                        return None;
+                    }
+                }
+            }
+            _ => {
+                self.kind(place, item, "a whole number, a range such as \"18..60\", or a list");
+                return None;
+            }
+        };
+        match read {
+            Ok(counts) => Some(counts),
+            Err(d) => {
+                self.report(*d, place, item.span());
+                None
+            }
+        }
+    }
+
+    fn names<T: std::str::FromStr<Err = Box<Diagnostic>>>(&mut self, place: &str, item: &Item) -> Vec<T> {
+        let Some(list) = item.as_array() else {
+            self.kind(place, item, "a list of names");
+            return vec![];
+        };
+        let mut found = vec![];
+        for value in list {
+            match value.as_str().map(str::parse::<T>) {
+                Some(Ok(t)) => found.push(t),
+                Some(Err(d)) => self.report(*d, place, value.span()),
+                None => self.kind(place, item, "a list of names"),
+            }
+        }
+        found
+    }
+
+    fn unknown(&mut self, place: &str, key: &str, item: &Item, known: &[&str]) {
+        let path = if place.is_empty() { key.to_owned() } else { format!("{place}.{key}") };
+        let d = Diagnostic::new(Code::UnknownKey, path.as_str(), format!("there is no key `{path}`"))
+            .suggest(key, known.iter().copied())
+            .hint(format!("its keys are: {}", known.join(", ")));
+        self.report(d, &path, item.span());
+    }
+
+    fn length(&mut self, place: &str, item: &Item) -> Option<f64> {
+        let Some(text) = item.as_str() else {
+            self.kind(place, item, "a length with its unit, such as \"90 mm\"");
+            return None;
+        };
+        match units::parse(text, units::Dimension::LENGTH) {
+            Ok(q) if q.si() > 0.0 && q.si().is_finite() => Some(q.si()),
+            Ok(_) => {
+                let d = Diagnostic::new(Code::OutOfRange, place, format!("`{place}` must be above 0"));
+                self.report(d, place, item.span());
+                None
+            }
+            Err(e) => {
+                self.report(Diagnostic::from(e), place, item.span());
+                None
+            }
+        }
+    }
+}
+
+/// The gears of a set in a file: paths within the set, in the order of [`SetKind::gears`] (and the short planet).
+fn paths(kind: SetKind) -> &'static [&'static str] {
+    match kind {
+        SetKind::Simple => &["sun.teeth", "planet.teeth", "ring.teeth"],
+        SetKind::Wolfrom => {
+            &["suns.0.teeth", "suns.0.planet_teeth", "rings.0.teeth", "rings.1.planet_teeth", "rings.1.teeth"]
+        }
+        SetKind::Ravigneaux => {
+            &["small_sun.teeth", "large_sun.teeth", "long_planet.teeth", "ring.teeth", "short_planet.teeth"]
+        }
+    }
+}
+
+/// The tables that say how many planets there are.
+fn planet_tables(kind: SetKind) -> &'static [&'static str] {
+    match kind {
+        SetKind::Simple | SetKind::Wolfrom => &["planet"],
+        SetKind::Ravigneaux => &["short_planet", "long_planet"],
+    }
+}
+
+/// What stands at a path of names and positions.
+fn at<'d>(item: &'d Item, path: &str) -> Option<&'d Item> {
+    let mut now = item;
+    for part in path.split('.') {
+        now = match part.parse::<usize>() {
+            Ok(k) => now.get(k)?,
+            Err(_) => now.get(part)?,
+        };
+    }
+    Some(now)
+}
+
+/// Tables of a list, whichever way it is written.
+fn tables(item: Option<&Item>) -> usize {
+    match item {
+        Some(Item::ArrayOfTables(a)) => a.len(),
+        Some(Item::Value(Value::Array(a))) => a.len(),
+        _ => 0,
+    }
+}
+
+/// An item of a list of tables as an item of its own.
+fn nth(item: &Item, k: usize) -> Option<Item> {
+    match item {
+        Item::ArrayOfTables(a) => a.get(k).map(|t| Item::Table(t.clone())),
+        Item::Value(Value::Array(a)) => a.get(k).map(|v| Item::Value(v.clone())),
+        _ => None,
+    }
+}
+
+impl Design {
+    /// Reads a design file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, each with its place.
+    pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
+        let parsed = toml_edit::Document::parse(text.to_owned()).map_err(|e| {
+            let mut d = Diagnostic::new(Code::Syntax, "", e.message().to_owned());
+            d.span = e.span().map(Into::into);
+            let mut all = one(d);
+            all.stand_in(None, text);
+            all
+        })?;
+        let mut reader = Reader { text, wrong: Diagnostics::default() };
+        let built = Self::read(parsed.as_item(), &mut reader);
+        let mut wrong = reader.wrong;
+        match built {
+            Some(Ok(design)) if !wrong.has_errors() => Ok(design),
+            Some(Err(more)) => {
+                wrong.extend(more.iter().cloned());
+                wrong.stand_in(None, text);
+                Err(wrong)
+            }
+            _ => {
+                wrong.stand_in(None, text);
+                Err(wrong)
+            }
+        }
+    }
+
+    fn read(root: &Item, r: &mut Reader<'_>) -> Option<Result<Self, Diagnostics>> {
+        let nothing = Item::Table(Table::new());
+        let design = root.get("design").unwrap_or(&nothing);
+        let Some(table) = design.as_table_like() else {
+            r.kind("design", design, "a table");
+            return None;
+        };
+        for (key, item) in table.iter().filter(|(k, _)| !KEYS.contains(k)) {
+            r.unknown("design", key, item, &KEYS);
+        }
+        let tolerance = match table.get("tolerance") {
+            Some(item) => r.rational("design.tolerance", item).unwrap_or(Rational::new(1, 100)),
+            None => Rational::new(1, 100),
+        };
+        let planets = table.get("planets").and_then(|i| r.counts("design.planets", i));
+        let mismatch = match table.get("mismatch").map(|i| (i, r.counts("design.mismatch", i))) {
+            Some((item, Some(counts))) => {
+                let list: Vec<i64> = counts.within(-100, 100).collect();
+                if list.iter().any(|d| d.abs() > 4) {
+                    let message = "a mismatch beyond ±4 teeth cannot be closed by profile shift";
+                    r.report(Diagnostic::new(Code::OutOfRange, "", message), "design.mismatch", item.span());
+                }
+                list
+            }
+            _ => vec![0],
+        };
+        let mut rules: Vec<Rule> = match table.get("rules") {
+            Some(item) => r.names("design.rules", item),
+            None => vec![Rule::Assembly, Rule::Clearance],
+        };
+        rules.sort_unstable();
+        rules.dedup();
+        let gap = match table.get("gap") {
+            Some(item) => {
+                match item.as_str().map(|t| t.trim_end_matches("modules").trim_end_matches("module").trim()) {
+                    Some(t) => t.parse::<Rational>().ok().as_ref().and_then(Length::of).or_else(|| {
+                        r.kind("design.gap", item, "a number of modules, such as \"0.5\"");
+                        None
+                    }),
+                    None => r.rational("design.gap", item).as_ref().and_then(Length::of),
+                }
+            }
+            None => Some(Length::ZERO),
+        };
+        let module = table.get("module").and_then(|i| r.length("design.module", i));
+        let limits = Self::limits(table.get("limits"), r);
+        let require = Self::require(table.get("require"), r);
+        let mut objectives: Vec<Objective> = vec![];
+        for (key, high) in [("minimize", false), ("maximize", true)] {
+            let place = format!("design.{key}");
+            let Some(item) = table.get(key) else { continue };
+            for o in r.names::<Objective>(&place, item) {
+                if o.is_better_high() != high {
+                    let other = if high { "minimize" } else { "maximize" };
+                    let d = Diagnostic::new(Code::Conflict, "", format!("`{o}` belongs under `{other}`"));
+                    r.report(d, &place, item.span());
+                }
+                if !objectives.contains(&o) {
+                    objectives.push(o);
+                }
+            }
+        }
+        if objectives.is_empty() {
+            objectives = vec![Objective::Error, Objective::RingDiameter, Objective::Forward, Objective::Backward];
+        }
+        let mut raw_targets = vec![];
+        for k in 0..tables(table.get("target")) {
+            let place = format!("design.target[{k}]");
+            let Some(item) = table.get("target").and_then(|t| nth(t, k)) else { continue };
+            if let Some(t) = Self::target(&item, &place, &tolerance, r) {
+                raw_targets.push(t);
+            }
+        }
+        if raw_targets.is_empty() && !r.wrong.has_errors() {
+            let d = Diagnostic::new(Code::MissingKey, "design.target", "no ratio is asked for")
+                .hint("add `[[design.target]]` with `ratio = 4.7`, and `state = \"1\"` where the train has states");
+            r.report(d, "design.target", None);
+        }
+        let sets = Self::sets(root, (planets, &mismatch, gap.unwrap_or(Length::ZERO), &rules, module), r);
+        if r.wrong.has_errors() {
+            return None;
+        }
+        if sets.is_empty() {
+            let d = Diagnostic::new(
+                Code::MissingKey,
+                "set",
+                "no set has a range of teeth, so that nothing is to be designed",
+            )
+            .hint("write a range for some tooth numbers: `teeth = \"18..60\"`");
+            r.report(d, "set", None);
+            return None;
+        }
+        Some(Self::assemble(root, r, sets, raw_targets, (limits, require, objectives, rules)))
+    }
+
+    fn limits(item: Option<&Item>, r: &mut Reader<'_>) -> Limits {
+        let mut limits = Limits::default();
+        let Some(item) = item else { return limits };
+        let Some(table) = item.as_table_like() else {
+            r.kind("design.limits", item, "a table");
+            return limits;
+        };
+        for (key, item) in table.iter() {
+            let place = format!("design.limits.{key}");
+            match key {
+                "ring_diameter" if item.is_str() => limits.ring_diameter = r.length(&place, item),
+                "ring_diameter" => limits.ring_diameter = r.positive(&place, item),
+                "planet_spin" => limits.planet_spin = r.positive(&place, item),
+                "member_speed" => limits.member_speed = r.positive(&place, item),
+                "element_torque" => limits.element_torque = r.positive(&place, item),
+                _ => r.unknown(
+                    "design.limits",
+                    key,
+                    item,
+                    &["ring_diameter", "planet_spin", "member_speed", "element_torque"],
+                ),
+            }
+        }
+        limits
+    }
+
+    fn require(item: Option<&Item>, r: &mut Reader<'_>) -> Requirements {
+        let mut require = Requirements::default();
+        let Some(item) = item else { return require };
+        let Some(table) = item.as_table_like() else {
+            r.kind("design.require", item, "a table");
+            return require;
+        };
+        for (key, item) in table.iter() {
+            let place = format!("design.require.{key}");
+            let value = match key {
+                "forward" => &mut require.forward,
+                "backward" => &mut require.backward,
+                "lock_margin" => &mut require.lock_margin,
+                _ => {
+                    r.unknown("design.require", key, item, &["forward", "backward", "lock_margin"]);
+                    continue;
+                }
+            };
+            *value = r.positive(&place, item);
+            if let (Some(v), true) = (*value, key != "lock_margin")
+                && v > 1.0
+            {
+                let message = format!("no efficiency is above 1: {v}");
+                r.report(Diagnostic::new(Code::OutOfRange, "", message), &place, item.span());
+            }
+        }
+        require
+    }
+
+    fn target(
+        item: &Item,
+        place: &str,
+        tolerance: &Rational,
+        r: &mut Reader<'_>,
+    ) -> Option<(Option<String>, Ratio, Option<Range<usize>>)> {
+        const KEYS: [&str; 4] = ["state", "ratio", "tolerance", "any_sign"];
+        let Some(table) = item.as_table_like() else {
+            r.kind(place, item, "a table");
+            return None;
+        };
+        for (key, value) in table.iter().filter(|(k, _)| !KEYS.contains(k)) {
+            r.unknown(place, key, value, &KEYS);
+        }
+        let state = match table.get("state") {
+            Some(i) => match i.as_str() {
+                Some(s) => Some(s.to_owned()),
+                None => {
+                    r.kind(&format!("{place}.state"), i, "the name of a state");
+                    return None;
+                }
+            },
+            None => None,
+        };
+        let any_sign = table.get("any_sign").and_then(Item::as_bool).unwrap_or(false);
+        let own = match table.get("tolerance") {
+            Some(i) => r.rational(&format!("{place}.tolerance"), i)?,
+            None => tolerance.clone(),
+        };
+        if own.sign() < 0 || own >= Rational::ONE {
+            let d = Diagnostic::new(Code::OutOfRange, "", format!("a tolerance of {own} is not from 0 to below 1"));
+            r.report(d, place, table.get("tolerance").and_then(Item::span));
+            return None;
+        }
+        let Some(ratio) = table.get("ratio") else {
+            r.report(Diagnostic::new(Code::MissingKey, "", "a target needs a `ratio`"), place, item.span());
+            return None;
+        };
+        let at = format!("{place}.ratio");
+        let read = match ratio.as_array() {
+            Some(ends) => {
+                let ends: Vec<Rational> =
+                    ends.iter().filter_map(|v| r.rational(&at, &Item::Value(v.clone()))).collect();
+                match <[Rational; 2]>::try_from(ends) {
+                    Ok([a, b]) if a <= b => Ratio::within([a, b], any_sign),
+                    Ok([a, b]) => {
+                        let message = format!("the window from {a} to {b} is empty");
+                        let d = Diagnostic::new(Code::OutOfRange, "", message).hint("write the smaller number first");
+                        r.report(d, &at, ratio.span());
+                        return None;
+                    }
+                    Err(_) => {
+                        r.kind(&at, ratio, "a number, or a list of two");
+                        return None;
+                    }
+                }
+            }
+            None => Ratio::near(r.rational(&at, ratio)?, &own, any_sign),
+        };
+        if read.aim.is_zero() && read.windows[0][0].is_zero() {
+            r.report(Diagnostic::new(Code::OutOfRange, "", "no train has the ratio 0"), &at, ratio.span());
+            return None;
+        }
+        Some((state, read, ratio.span()))
+    }
+
+    fn sets(
+        root: &Item,
+        (planets, mismatch, gap, rules, module): (Option<Counts>, &[i64], Length, &[Rule], Option<f64>),
+        r: &mut Reader<'_>,
+    ) -> Vec<DesignedSet> {
+        let mut found = vec![];
+        let Some(all) = root.get("set") else { return found };
+        for index in 0..tables(Some(all)) {
+            let Some(set) = nth(all, index) else { continue };
+            let place = format!("set[{index}]");
+            let kind = match set.get("type").and_then(Item::as_str).unwrap_or("simple") {
+                "simple" => Some(SetKind::Simple),
+                "stepped" => Some(SetKind::Wolfrom),
+                "ravigneaux" => Some(SetKind::Ravigneaux),
+                _ => None,
+            };
+            let ranged = |i: Option<&Item>| i.is_some_and(|i| i.is_str() || i.is_array());
+            let has_ranges = |kind: SetKind| {
+                paths(kind).iter().any(|p| ranged(at(&set, p)))
+                    || planet_tables(kind).iter().any(|p| ranged(at(&set, &format!("{p}.count"))))
+            };
+            let Some(kind) = kind else { continue };
+            let name = set.get("name").and_then(Item::as_str).unwrap_or("").to_owned();
+            if !has_ranges(kind) {
+                continue;
+            }
+            if kind == SetKind::Wolfrom {
+                let shape = (tables(set.get("suns")), tables(set.get("rings")));
+                if shape != (1, 2) {
+                    let message = format!(
+                        "set `{name}`: ranges are known for stepped sets with one sun and two rings, not {} and {}",
+                        shape.0, shape.1
+                    );
+                    r.report(Diagnostic::new(Code::Unfit, "", message), &place, set.span());
+                    continue;
+                }
+                let same = |p: &str| at(&set, p).map(|i| i.to_string().trim().to_owned());
+                if same("suns.0.planet_teeth") != same("rings.0.planet_teeth") {
+                    let message = format!(
+                        "set `{name}`: the first ring must mesh with the step of the sun, with the same `planet_teeth`"
+                    );
+                    let d = Diagnostic::new(Code::Conflict, "", message).hint("write the same range for both");
+                    r.report(d, &format!("{place}.rings[0].planet_teeth"), set.span());
+                    continue;
+                }
+            }
+            let mut gears = vec![];
+            for path in paths(kind) {
+                let full = format!("{place}.{path}");
+                gears.push(match at(&set, path) {
+                    Some(item) => r.counts(&full, item),
+                    None if path.contains("planet") => Some(Counts::range(6, super::range::MOST_TEETH)),
+                    None => {
+                        let d = Diagnostic::new(Code::MissingKey, "", format!("set `{name}` needs `{path}`"));
+                        r.report(d.hint("write a number or a range"), &full, set.span());
+                        None
+                    }
+                });
+            }
+            let own = planet_tables(kind).iter().find_map(|p| at(&set, &format!("{p}.count")).map(|i| (*p, i)));
+            let planets = match own {
+                Some((p, item)) => r.counts(&format!("{place}.{p}.count"), item),
+                None => Some(planets.clone().unwrap_or_else(|| Counts::range(3, 3))),
+            };
+            let (Some(gears), Some(planets)) = (gears.into_iter().collect::<Option<Vec<_>>>(), planets) else {
+                continue;
+            };
+            if planets.within(1, 64).count() == 0 || planets.least().is_some_and(|n| n < 1) {
+                let message = format!("`{planets}` is no number of planets from 1 to 64");
+                r.report(Diagnostic::new(Code::OutOfRange, "", message), &format!("{place}.planet.count"), None);
+                continue;
+            }
+            if planets.within(1, 64).count() > super::space::MOST_PLANETS {
+                let message = format!("`{planets}` are more than {} numbers of planets", super::space::MOST_PLANETS);
+                r.report(Diagnostic::new(Code::OutOfRange, "", message), &format!("{place}.planet.count"), None);
+                continue;
+            }
+            let geometry = match kind {
+                SetKind::Wolfrom => at(&set, "rings.0.geometry").or(set.get("geometry")),
+                _ => set.get("geometry"),
+            };
+            let own_module = geometry
+                .and_then(|g| g.get("module"))
+                .and_then(Item::as_str)
+                .and_then(|t| units::parse(t, units::Dimension::LENGTH).ok())
+                .map(|q| q.si());
+            let angle = geometry
+                .and_then(|g| g.get("pressure_angle"))
+                .and_then(Item::as_str)
+                .and_then(|t| units::parse(t, units::Dimension::ANGLE).ok())
+                .map(|q| q.si());
+            let mut space = SetSpace::new(kind, gears, planets).rules(rules.iter().copied()).gap(gap);
+            space = space.mismatch(mismatch.iter().copied());
+            space.rack = Rack::with_angle(angle);
+            found.push(DesignedSet {
+                index,
+                name,
+                space,
+                module: own_module.or(module),
+                has_geometry: geometry.is_some(),
+            });
+        }
+        found
+    }
+
+    fn assemble(
+        root: &Item,
+        r: &mut Reader<'_>,
+        mut sets: Vec<DesignedSet>,
+        raw: Vec<(Option<String>, Ratio, Option<Range<usize>>)>,
+        (limits, require, objectives, rules): (Limits, Requirements, Vec<Objective>, Vec<Rule>),
+    ) -> Result<Self, Diagnostics> {
+        let metric = sets.iter().all(|s| s.module.is_some());
+        if let (Some(limit), false) = (limits.ring_diameter, metric) {
+            // A length needs modules; a bare number is one of modules.
+            let is_text = root.get("design").and_then(|d| at(d, "limits.ring_diameter")).is_some_and(Item::is_str);
+            if is_text {
+                let d = Diagnostic::new(
+                    Code::MissingKey,
+                    "design.module",
+                    format!("a ring diameter of {} mm is asked for, but no module is given", limit * 1e3),
+                )
+                .hint(
+                    "add `module = \"0.5 mm\"` to `[design]`, or a `geometry` to the set, or give the limit in modules",
+                );
+                return Err(one(d));
+            }
+        }
+        if let Some(limit) = limits.ring_diameter {
+            for s in &mut sets {
+                let module = if metric { s.module.unwrap_or(1.0) } else { 1.0 };
+                // The largest number of teeth whose reference diameter is not above the limit.
+                s.space.ring_limit = Some((limit / module * (1.0 + 1e-12)).floor().clamp(0.0, 1e9) as i64);
+            }
+        }
+        let mut template: DocumentMut = match r.text.parse() {
+            Ok(document) => document,
+            Err(_) => return Err(one(Diagnostic::new(Code::Syntax, "", "the file is not valid TOML"))),
+        };
+        template.remove("design");
+        let name = template.get("name").and_then(Item::as_str).unwrap_or("design").to_owned();
+        // Any tooth numbers that close tell what the layout is.
+        let mut any = template.clone();
+        let mut wrong = Diagnostics::default();
+        for s in &sets {
+            // Those that need no shift first.
+            let mut mismatch = s.space.mismatch.clone();
+            mismatch.sort_by_key(|d| d.abs());
+            let plain = SetSpace { rules: vec![], ring_limit: None, ..s.space.clone() };
+            let first = |d: i64| plain.clone().mismatch([d]).all().next();
+            let Some(teeth) = mismatch.into_iter().find_map(first) else {
+                let ranges: Vec<String> =
+                    s.space.kind.gears().iter().zip(&s.space.gears).map(|(n, c)| format!("{n} {c}")).collect();
+                let message =
+                    format!("set `{}`: no teeth of these ranges lie on one axis: {}", s.name, ranges.join(", "));
+                let d = Diagnostic::new(Code::NotCoaxial, format!("set[{}]", s.index), message);
+                wrong.push(d.hint("the ring needs s + 2 p teeth; widen a range, or allow a `mismatch`"));
+                continue;
+            };
+            let short = (s.space.kind == SetKind::Ravigneaux).then(|| teeth[2]);
+            let shifts = if s.has_geometry { s.shifts(&teeth, short) } else { None };
+            substitute(&mut any, s, &teeth, s.space.planets[0], short, shifts.as_deref());
+        }
+        if !wrong.is_empty() {
+            return Err(wrong);
+        }
+        let model = Model::from_toml(&any.to_string()).map_err(|mut e| {
+            // The places are those of another text.
+            e = e
+                .iter()
+                .cloned()
+                .map(|mut d| {
+                    d.span = None;
+                    d
+                })
+                .fold(Diagnostics::default(), |mut all, d| {
+                    all.push(d);
+                    all
+                });
+            e
+        })?;
+        let mut kinds = vec![None; model.train().sets().len()];
+        for s in &sets {
+            if let Some(k) = model.train().sets().iter().position(|t| t.name == s.name) {
+                kinds[k] = Some(s.space.kind);
+            }
+        }
+        let layout = Layout::new(model.train(), &kinds)?;
+        let mut targets: Vec<(usize, Target)> = vec![];
+        for (k, (state, ratio, span)) in raw.into_iter().enumerate() {
+            let place = format!("design.target[{k}].state");
+            let found = match &state {
+                Some(name) => layout.states.iter().position(|s| s.name == *name),
+                None if layout.states.len() == 1 => Some(0),
+                None => None,
+            };
+            match found {
+                Some(n) if targets.iter().any(|t| t.0 == n) => {
+                    let message = format!("state `{}` has two targets", layout.states[n].name);
+                    let mut d = Diagnostic::new(Code::Conflict, place, message).hint("keep one of them");
+                    d.span = span.map(Into::into);
+                    wrong.push(d);
+                }
+                Some(n) => targets.push((n, Target { state: layout.states[n].name.clone(), ratio })),
+                None => {
+                    let names = layout.states.iter().map(|s| s.name.as_str());
+                    let mut d = match &state {
+                        Some(name) => Diagnostic::missing(Code::UnknownSelection, "state", name, names),
+                        None => Diagnostic::new(
+                            Code::MissingKey,
+                            "",
+                            "the train has several states: say which one is meant",
+                        ),
+                    };
+                    d.place = place;
+                    d.span = span.map(Into::into);
+                    wrong.push(d);
+                }
+            }
+        }
+        if !wrong.is_empty() {
+            return Err(wrong);
+        }
+        Ok(Self {
+            template,
+            text: r.text.to_owned(),
+            name,
+            sets,
+            layout,
+            targets,
+            limits,
+            require,
+            objectives,
+            rules,
+            metric,
+        })
+    }
+
+    /// The text of the design file.
+    pub fn to_toml(&self) -> &str {
+        &self.text
+    }
+
+    /// What designs are judged by, in the order of the file.
+    pub fn objectives(&self) -> &[Objective] {
+        &self.objectives
+    }
+
+    /// The ratios that are asked for.
+    pub fn targets(&self) -> impl Iterator<Item = &Target> {
+        self.targets.iter().map(|(_, t)| t)
+    }
+}
+
+/// Writes tooth numbers, planets and profile shifts into a train file.
+pub(crate) fn substitute(
+    document: &mut DocumentMut,
+    set: &DesignedSet,
+    teeth: &[i64],
+    planets: i64,
+    short: Option<i64>,
+    shifts: Option<&[f64]>,
+) {
+    let kind = set.space.kind;
+    let mut put = |path: &str, value: Value| write(document, set.index, path, value);
+    let all = teeth.iter().copied().chain(short);
+    for (path, z) in paths(kind).iter().zip(all) {
+        put(path, z.into());
+    }
+    if kind == SetKind::Wolfrom {
+        put("rings.0.planet_teeth", teeth[1].into());
+    }
+    for table in planet_tables(kind) {
+        put(&format!("{table}.count"), planets.into());
+    }
+    if let Some(x) = shifts {
+        let places: &[&str] = match kind {
+            SetKind::Simple => &["sun.shift", "planet.shift", "ring.shift"],
+            SetKind::Wolfrom => {
+                &["suns.0.shift", "suns.0.planet.shift", "rings.0.shift", "rings.1.planet.shift", "rings.1.shift"]
+            }
+            SetKind::Ravigneaux => {
+                &["small_sun.shift", "large_sun.shift", "long_planet.shift", "ring.shift", "short_planet.shift"]
+            }
+        };
+        for (path, x) in places.iter().zip(x) {
+            put(path, (*x).into());
+        }
+        if kind == SetKind::Wolfrom {
+            put("rings.0.planet.shift", x[1].into());
+        }
+    }
+}
+
+/// Sets a value at a path within a set, with the tables on the way.
+fn write(document: &mut DocumentMut, set: usize, path: &str, value: Value) {
+    fn within(item: &mut Item, parts: &[&str], value: Value) {
+        let Some((first, rest)) = parts.split_first() else {
+            let decor = item.as_value().map(|v| v.decor().clone());
+            *item = Item::Value(value);
+            if let (Some(decor), Some(v)) = (decor, item.as_value_mut()) {
+                *v.decor_mut() = decor;
+            }
+            return;
+        };
+        if let Ok(k) = first.parse::<usize>() {
+            match item {
+                Item::ArrayOfTables(a) => {
+                    if let Some(t) = a.get_mut(k) {
+                        // A table cannot be lent as an item: it goes out and comes back.
+                        let mut own = Item::Table(std::mem::take(t));
+                        within(&mut own, rest, value);
+                        if let Item::Table(changed) = own {
+                            *t = changed;
+                        }
+                    }
+                }
+                Item::Value(Value::Array(a)) => {
+                    if let Some(v) = a.get_mut(k) {
+                        let mut own = Item::Value(v.clone());
+                        within(&mut own, rest, value);
+                        if let Item::Value(changed) = own {
+                            *v = changed;
+                        }
+                    }
+                }
+                _ => {}
+            }
+            return;
+        }
+        let Some(table) = item.as_table_like_mut() else { return };
+        if table.get(first).is_none() {
+            let fresh = if rest.is_empty() { Item::None } else { Item::Value(InlineTable::new().into()) };
+            table.insert(first, if rest.is_empty() { Item::Value(value.clone()) } else { fresh });
+        }
+        if let Some(next) = table.get_mut(first) {
+            within(next, rest, value);
+        }
+        if let Item::Value(Value::InlineTable(t)) = item {
+            t.fmt();
+        }
+    }
+    let parts: Vec<&str> = path.split('.').collect();
+    let number = set.to_string();
+    if let Some(sets) = document.get_mut("set") {
+        within(sets, &[&[number.as_str()], &parts[..]].concat(), value);
+    }
+}
+
+pub(crate) fn one(d: Diagnostic) -> Diagnostics {
+    let mut all = Diagnostics::default();
+    all.push(d);
+    all
+}

@@ -1,0 +1,880 @@
+//! The search: every tooth number of a design file, counted and judged.
+
+use std::sync::Mutex;
+
+use serde::{Deserialize, Serialize};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::work::{Effort, Work};
+
+use super::answer::Stage;
+use super::document::Design;
+use super::front::Front;
+use super::layout::SetKind;
+use super::lines::{self, Bounds};
+use super::nest::{self, Chosen, Nest, Unit};
+use super::range::MOST_TEETH;
+use super::space::{Group, Item, SetSpace};
+use super::statics::{Point, Way};
+use super::wish::Objective;
+
+/// How many there are.
+///
+/// Example: [`Design`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Found {
+    /// Tooth numbers that follow every rule with some number of planets.
+    pub trains: u64,
+    /// The same with every number of planets and every short planet counted.
+    pub designs: u64,
+}
+
+/// Tooth numbers of all designed sets.
+pub(crate) type Teeth = Vec<Vec<i64>>;
+
+/// A search that is under way, or done: what was counted, and the front so far. It serialises, so that a search can be
+/// stopped and resumed, and divided and put together again.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Progress {
+    /// Steps of the outermost loop that are done, as ranges `[from, to)`, ascending.
+    pub done: Vec<[u64; 2]>,
+    /// All steps of the outermost loop.
+    pub of: u64,
+    /// What is left after each condition.
+    pub waterfall: Vec<Stage>,
+    /// The front: tooth numbers of every designed set.
+    pub front: Vec<Teeth>,
+}
+
+/// What is known of tooth numbers without a certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Judged {
+    pub error: f64,
+    pub forward: f64,
+    pub backward: f64,
+    pub self_locking: bool,
+    pub lock_margin: f64,
+    pub member_speed: f64,
+    pub planet_spin: f64,
+    pub element_torque: Option<f64>,
+}
+
+/// What must be computed of tooth numbers beside ratios.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Needs {
+    pub speeds: bool,
+    pub ways: bool,
+    pub margin: bool,
+}
+
+impl Needs {
+    /// Everything.
+    pub const ALL: Self = Self { speeds: true, ways: true, margin: true };
+}
+
+/// How the space is walked through.
+enum Walked<'d> {
+    /// A Wolfrom drive by itself: suns, and windows.
+    Lines(Vec<i64>, Vec<Bounds>, &'d SetSpace),
+    /// Nested windows.
+    Nest,
+}
+
+/// A result of a part of the search.
+struct Part {
+    tally: Vec<Stage>,
+    front: Front<Teeth>,
+}
+
+/// Walks through some steps of the outermost loop.
+type Steps<'s> = dyn Fn(std::ops::Range<usize>, &mut dyn Receive) + Sync + 's;
+
+/// Receives what the loops find.
+trait Receive {
+    /// Tooth numbers of the only set.
+    fn single(&mut self, item: &Item);
+    /// Groups of items of several sets.
+    fn coupled(&mut self, groups: &[&Group]);
+}
+
+impl Design {
+    /// Counts what satisfies targets, rules and the largest ring, without looking at efficiencies and speeds.
+    ///
+    /// Example: [`Design`].
+    pub fn count(&self) -> Found {
+        let mut found = Found::default();
+        let mut add = |trains: u64, designs: u64| {
+            found.trains += trains;
+            found.designs += designs;
+        };
+        match self.way() {
+            Walked::Lines(suns, windows, space) => {
+                for s in suns {
+                    lines::lines(space, s, &windows, &mut |teeth| {
+                        let designs = u64::from(space.admitted(&teeth).count_ones());
+                        if designs > 0 {
+                            add(1, designs);
+                        }
+                    });
+                }
+            }
+            Walked::Nest => {
+                struct Count<'a>(&'a mut dyn FnMut(u64, u64), usize);
+                impl nest::Sink for Count<'_> {
+                    fn found(&mut self, chosen: &Chosen<'_, '_>, last: &[Group]) {
+                        let Some(first) = last.first() else { return };
+                        // Only the innermost loop changes: its sums are multiplied by those of the others.
+                        let units = chosen.units(first, self.1);
+                        let moving = chosen.innermost();
+                        let of = |g: &Group| [last_of(&g.trains), last_of(&g.designs)];
+                        let mut outer = [1, 1];
+                        for (_, g) in units.iter().enumerate().filter(|(u, _)| *u != moving) {
+                            let [t, d] = of(g);
+                            outer = [outer[0] * t, outer[1] * d];
+                        }
+                        let sums = last.iter().map(of).fold([0, 0], |s, g| [s[0] + g[0], s[1] + g[1]]);
+                        (self.0)(outer[0] * sums[0], outer[1] * sums[1]);
+                    }
+                }
+                let units = self.units(false);
+                let nest = Nest::new(&units, &self.nest_targets());
+                let outer = nest.outer();
+                nest.walk(0..outer, &willis::work::Serial, &mut Count(&mut add, self.sets.len()));
+            }
+        }
+        found
+    }
+
+    /// Calls `found` with the tooth numbers of everything that [`Design::count`] counts as a train, set by set, in a fixed
+    /// order.
+    pub fn for_each(&self, mut found: impl FnMut(&[&[i64]])) {
+        struct All<'a>(&'a mut dyn FnMut(&[&[i64]]));
+        impl Receive for All<'_> {
+            fn single(&mut self, item: &Item) {
+                if item.is_admissible() {
+                    (self.0)(&[&item.teeth]);
+                }
+            }
+            fn coupled(&mut self, groups: &[&Group]) {
+                let lists: Vec<Vec<&Item>> =
+                    groups.iter().map(|g| g.items.iter().filter(|i| i.is_admissible()).collect()).collect();
+                let mut teeth: Vec<&[i64]> = vec![];
+                product(&lists, &mut teeth, self.0);
+            }
+        }
+        fn product<'i>(lists: &[Vec<&'i Item>], teeth: &mut Vec<&'i [i64]>, found: &mut dyn FnMut(&[&[i64]])) {
+            match lists.split_first() {
+                None => found(teeth),
+                Some((list, rest)) => {
+                    for item in list {
+                        teeth.push(&item.teeth);
+                        product(rest, teeth, found);
+                        teeth.pop();
+                    }
+                }
+            }
+        }
+        self.walk(false, &mut |outer, walk| {
+            walk(0..outer, &mut All(&mut found));
+        });
+    }
+
+    /// The spaces of the sets, in order; sets with the same space share it.
+    fn units(&self, every_stage: bool) -> Vec<Unit<'_>> {
+        let mut units: Vec<Unit<'_>> = vec![];
+        for s in &self.sets {
+            let unit = match units.iter().find(|u| *u.space == s.space) {
+                Some(same) => same.clone(),
+                None => Unit::new(&s.space, every_stage),
+            };
+            units.push(unit);
+        }
+        units
+    }
+
+    fn nest_targets(&self) -> Vec<nest::Target> {
+        let of = |(state, t): &(usize, super::wish::Target)| nest::Target {
+            quotient: self.layout.states[*state].ratio.clone(),
+            windows: t.ratio.windows.clone(),
+        };
+        self.targets.iter().map(of).collect()
+    }
+
+    fn way(&self) -> Walked<'_> {
+        if let ([set], [(state, target)]) = (&self.sets[..], &self.targets[..])
+            && set.space.kind == SetKind::Wolfrom
+            && lines::is_wolfrom(&self.layout.states[*state].ratio)
+            && let Some(windows) = lines::bounds(&target.ratio.windows)
+        {
+            let most = set.space.gears[2].most().unwrap_or(MOST_TEETH);
+            return Walked::Lines(set.space.gears[0].within(1, most).collect(), windows, &set.space);
+        }
+        Walked::Nest
+    }
+
+    /// Prepares the loops, and hands over how many steps the outermost has and how to walk through some of them.
+    fn walk(&self, every_stage: bool, then: &mut dyn FnMut(usize, &Steps<'_>)) {
+        struct Each<'a>(&'a mut dyn Receive, usize);
+        impl nest::Sink for Each<'_> {
+            fn found(&mut self, chosen: &Chosen<'_, '_>, last: &[Group]) {
+                for group in last {
+                    if self.1 == 1 {
+                        group.items.iter().for_each(|i| self.0.single(i));
+                    } else {
+                        self.0.coupled(&chosen.units(group, self.1));
+                    }
+                }
+            }
+        }
+        match self.way() {
+            Walked::Lines(suns, windows, space) => then(suns.len(), &|range, receive| {
+                for s in &suns[range] {
+                    lines::lines(space, *s, &windows, &mut |teeth| {
+                        let item = space.item(teeth.to_vec());
+                        if every_stage || item.is_admissible() {
+                            receive.single(&item);
+                        }
+                    });
+                }
+            }),
+            Walked::Nest => {
+                let units = self.units(every_stage);
+                let nest = Nest::new(&units, &self.nest_targets());
+                then(nest.outer(), &|range, receive| {
+                    nest.walk(range, &willis::work::Serial, &mut Each(receive, self.sets.len()));
+                });
+            }
+        }
+    }
+
+    /// Targets that no tooth numbers can change and that are not met.
+    pub(crate) fn impossible(&self) -> Vec<usize> {
+        let all = self.nest_targets();
+        let constant = |t: &nest::Target| {
+            (0..self.layout.variables).all(|v| !t.quotient.depends_on(v)) && {
+                let ratio = willis::exact::Rational::new(t.quotient.numerator.0[0], t.quotient.denominator.0[0]);
+                !t.windows.iter().any(|[a, b]| *a <= ratio && ratio <= *b)
+            }
+        };
+        (0..all.len()).filter(|k| constant(&all[*k])).collect()
+    }
+
+    /// Names of the conditions, in their order.
+    pub(crate) fn conditions(&self) -> Vec<String> {
+        let mut all = vec!["ratio".to_owned()];
+        all.extend(self.rules.iter().map(|r| r.name().to_owned()));
+        if self.limits.ring_diameter.is_some() {
+            all.push("ring_diameter".into());
+        }
+        let later = [
+            ("planet_spin", self.limits.planet_spin),
+            ("member_speed", self.limits.member_speed),
+            ("element_torque", self.limits.element_torque),
+            ("forward", self.require.forward),
+            ("backward", self.require.backward),
+            ("lock_margin", self.require.lock_margin),
+        ];
+        all.extend(later.into_iter().filter(|l| l.1.is_some()).map(|l| l.0.to_owned()));
+        all
+    }
+
+    /// Which conditions beyond teeth are met, in the order of [`Design::conditions`].
+    fn meets(&self, j: &Judged) -> impl Iterator<Item = bool> {
+        let most = |limit: Option<f64>, value: f64| limit.map(|l| value <= l);
+        let least = |limit: Option<f64>, value: f64| limit.map(|l| value >= l);
+        [
+            most(self.limits.planet_spin, j.planet_spin),
+            most(self.limits.member_speed, j.member_speed),
+            most(self.limits.element_torque, j.element_torque.unwrap_or(0.0)),
+            least(self.require.forward, j.forward),
+            least(self.require.backward, j.backward),
+            least(self.require.lock_margin, j.lock_margin),
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    /// How much work it is, before it begins: an estimate from the sizes of the loops.
+    ///
+    /// # Errors
+    /// Spaces so large that not even their lists could be made.
+    pub fn effort(&self) -> Result<Effort, Diagnostics> {
+        let size = |c: &super::range::Counts| c.within(1, MOST_TEETH).count() as f64;
+        let mut lists = 0.0;
+        let mut product = 1.0;
+        for s in &self.sets {
+            let [sun, planet, _] = seeds(s.space.kind);
+            let own =
+                size(&s.space.gears[sun]) * self.planets_between(&s.space, planet) * s.space.mismatch.len() as f64;
+            let second = match s.space.kind {
+                SetKind::Simple => 1.0,
+                SetKind::Wolfrom => self.planets_between(&s.space, 3) * s.space.mismatch.len() as f64,
+                SetKind::Ravigneaux => size(&s.space.gears[0]),
+            };
+            if own > 3e7 {
+                let message =
+                    format!("set `{}` has {own:.0} choices of its first gears; 30 million are the most", s.name);
+                return Err(Diagnostic::new(Code::TooLong, format!("set[{}]", s.index), message)
+                    .hint("give the ring an upper end, or narrow the ranges")
+                    .into());
+            }
+            lists += own;
+            product *= own * second;
+        }
+        // Windows leave a small share of each loop but the outermost.
+        let nodes = match self.way() {
+            Walked::Lines(..) => lists * self.targets[0].1.ratio.windows.len() as f64,
+            Walked::Nest => {
+                let bounded = self.targets.len().min(self.layout.variables) as i32;
+                lists + product * 0.02_f64.powi(bounded)
+            }
+        };
+        Ok(Effort::new("candidates", product.min(1.8e19) as u64, 3e-7 * nodes / product.max(1.0)))
+    }
+
+    fn planets_between(&self, space: &SetSpace, gear: usize) -> f64 {
+        let ring = space.gears.iter().filter_map(super::range::Counts::most).max().unwrap_or(MOST_TEETH);
+        space.gears[gear].within(1, ring.min(MOST_TEETH) / if gear == 3 { 1 } else { 2 } + 2).count() as f64
+    }
+
+    /// Searches what is not done yet, in as many parts as there are steps of the outermost loop, and stops between parts
+    /// when the work is cancelled. The result of parts does not depend on their order.
+    ///
+    /// # Errors
+    /// The space is too large, or takes longer than the work's patience.
+    pub fn search(
+        &self,
+        mut progress: Progress,
+        shard: Option<(u64, u64)>,
+        work: &dyn Work,
+    ) -> Result<Progress, Diagnostics> {
+        work.afford(&self.effort()?).map_err(Diagnostics::from)?;
+        self.walk(true, &mut |outer, walk| {
+            progress.of = outer as u64;
+            if progress.waterfall.is_empty() {
+                progress.waterfall = self.empty_tally();
+            }
+            let (from, to) = match shard {
+                Some((number, of)) if of > 0 => {
+                    let cut = |k: u64| (u128::from(k) * outer as u128 / u128::from(of)) as usize;
+                    (cut(number.saturating_sub(1)), cut(number.min(of)))
+                }
+                _ => (0, outer),
+            };
+            let is_done = |k: usize| progress.done.iter().any(|d| (d[0]..d[1]).contains(&(k as u64)));
+            let steps: Vec<usize> = (from..to).filter(|k| !is_done(*k)).collect();
+            // Enough parts for progress, few enough to be cheap.
+            let size = (steps.len() / 256).max(1);
+            let parts: Vec<&[usize]> = steps.chunks(size).collect();
+            let results: Vec<Mutex<Option<Part>>> = parts.iter().map(|_| Mutex::new(None)).collect();
+            work.begin("steps", steps.len() as u64);
+            work.run(parts.len(), &|k| {
+                let mut judge = Judge {
+                    design: self,
+                    part: Part { tally: self.empty_tally(), front: Front::default() },
+                    single: self.sets.len() == 1,
+                    needs: self.needs(),
+                };
+                for run in runs(parts[k]) {
+                    walk(run, &mut judge);
+                }
+                *results[k].lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(judge.part);
+                work.advance(parts[k].len() as u64);
+            });
+            let needs = self.needs();
+            let mut front = Front::default();
+            for teeth in std::mem::take(&mut progress.front) {
+                if let Some(judged) = self.judge(&teeth, needs) {
+                    front.offer(self.point(&judged, &teeth), teeth);
+                }
+            }
+            for (k, result) in results.into_iter().enumerate() {
+                if let Some(part) = result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
+                    add(&mut progress.waterfall, &part.tally);
+                    front.merge(part.front);
+                    progress.done.extend(runs(parts[k]).map(|r| [r.start as u64, r.end as u64]));
+                }
+            }
+            progress.done = joined(std::mem::take(&mut progress.done));
+            progress.front = front.into_sorted().into_iter().map(|(_, teeth)| teeth).collect();
+        });
+        Ok(progress)
+    }
+
+    /// Two parts of one search as one.
+    ///
+    /// # Errors
+    /// They are of different searches, or overlap.
+    pub fn merge(&self, a: Progress, b: Progress) -> Result<Progress, Diagnostics> {
+        let overlap = a.done.iter().any(|x| b.done.iter().any(|y| x[0] < y[1] && y[0] < x[1]));
+        if a.of != b.of || overlap || a.waterfall.len() != b.waterfall.len() {
+            let message =
+                if overlap { "these parts of a search overlap" } else { "these are parts of different searches" };
+            return Err(Diagnostic::new(Code::Conflict, "", message).into());
+        }
+        let mut whole = a;
+        add(&mut whole.waterfall, &b.waterfall);
+        whole.done = joined(whole.done.into_iter().chain(b.done).collect());
+        let needs = self.needs();
+        let mut front = Front::default();
+        for teeth in whole.front.into_iter().chain(b.front) {
+            if let Some(judged) = self.judge(&teeth, needs) {
+                front.offer(self.point(&judged, &teeth), teeth);
+            }
+        }
+        whole.front = front.into_sorted().into_iter().map(|(_, teeth)| teeth).collect();
+        Ok(whole)
+    }
+
+    fn empty_tally(&self) -> Vec<Stage> {
+        let planets: Vec<i64> = if self.sets.len() == 1 { self.sets[0].space.planets.clone() } else { vec![] };
+        let stage = |condition: String| Stage {
+            condition,
+            trains: 0,
+            designs: 0,
+            by_planets: planets.iter().map(|n| (n.to_string(), 0)).collect(),
+        };
+        self.conditions().into_iter().map(stage).collect()
+    }
+
+    /// What tooth numbers amount to; none where the train is singular.
+    pub(crate) fn judge(&self, teeth: &Teeth, what: Needs) -> Option<Judged> {
+        // Bands of several equilibria are those of Wolfrom drives; the others are certified when they are shown.
+        let quick = self.sets.len() > 1;
+        let numbers: Vec<Option<&[i64]>> = (0..self.layout.kinds.len())
+            .map(|k| {
+                let name = &self.layout.sets[k];
+                self.sets.iter().position(|s| s.name == *name).map(|p| teeth[p].as_slice())
+            })
+            .collect();
+        let of = |set: usize| numbers[set].unwrap_or(&[]);
+        let mut judged = Judged {
+            error: 0.0,
+            forward: 1.0,
+            backward: 1.0,
+            self_locking: false,
+            lock_margin: f64::INFINITY,
+            member_speed: 0.0,
+            planet_spin: 0.0,
+            element_torque: None,
+        };
+        let y = self.variables(teeth);
+        for (state, target) in &self.targets {
+            let state = &self.layout.states[*state];
+            judged.error = judged.error.max(target.ratio.deviation(state.ratio.at(&y)));
+            if what == Needs::default() {
+                continue;
+            }
+            let Some(point) = Point::new(&self.layout, state, &of) else {
+                // Equations repeat each other: the certified solver says what it can.
+                self.certified_ways(teeth, &target.state, &mut judged);
+                continue;
+            };
+            if what.speeds {
+                judged.member_speed = judged.member_speed.max(point.largest_speed());
+                judged.planet_spin = judged.planet_spin.max(point.planet_spin(&of));
+                judged.element_torque = match (judged.element_torque, point.largest_element_torque()) {
+                    (Some(a), Some(b)) => Some(a.max(b)),
+                    (a, b) => a.or(b),
+                };
+            }
+            if !what.ways && !what.margin {
+                continue;
+            }
+            let (forward, backward) = (point.efficiency(true, 1.0, quick), point.efficiency(false, 1.0, quick));
+            if forward == Way::Unclear || backward == Way::Unclear {
+                self.certified_ways(teeth, &target.state, &mut judged);
+            } else {
+                let value = |w: &Way| match w {
+                    Way::One(e) => e.min(1.0),
+                    // The worst that may happen.
+                    Way::Several(_, [low, _]) => low.clamp(0.0, 1.0),
+                    Way::Locks | Way::Unclear => 0.0,
+                };
+                judged.forward = judged.forward.min(value(&forward));
+                judged.backward = judged.backward.min(value(&backward));
+                judged.self_locking |= backward == Way::Locks;
+            }
+            if what.margin {
+                judged.lock_margin = judged.lock_margin.min(point.lock_margin().unwrap_or(f64::INFINITY));
+            }
+        }
+        Some(judged)
+    }
+
+    /// What objectives, limits and demands need to know.
+    pub(crate) fn needs(&self) -> Needs {
+        let has = |all: &[Objective]| all.iter().any(|o| self.objectives.contains(o));
+        let (l, r) = (&self.limits, &self.require);
+        Needs {
+            speeds: has(&[Objective::PlanetSpin, Objective::MemberSpeed, Objective::ElementTorque])
+                || [l.planet_spin, l.member_speed, l.element_torque].iter().any(Option::is_some),
+            ways: has(&[Objective::Forward, Objective::Backward]) || r.forward.is_some() || r.backward.is_some(),
+            margin: has(&[Objective::LockMargin]) || r.lock_margin.is_some(),
+        }
+    }
+
+    /// The basic ratios at tooth numbers.
+    pub(crate) fn variables(&self, teeth: &Teeth) -> Vec<f64> {
+        let mut y = vec![0.0; self.layout.variables];
+        for (k, name) in self.layout.sets.iter().enumerate() {
+            let Some(p) = self.sets.iter().position(|s| s.name == *name) else { continue };
+            let z: Vec<f64> = teeth[p].iter().map(|z| *z as f64).collect();
+            let own = match self.sets[p].space.kind {
+                SetKind::Simple => vec![z[2] / z[0]],
+                SetKind::Wolfrom => vec![z[2] / z[0], z[1] * z[4] / (z[0] * z[3])],
+                SetKind::Ravigneaux => vec![z[3] / z[1], z[3] / z[0]],
+            };
+            y[self.layout.first[k]..][..own.len()].copy_from_slice(&own);
+        }
+        y
+    }
+
+    /// The largest ring: reference diameter in metres, or in modules where none is given.
+    pub(crate) fn ring(&self, teeth: &Teeth) -> f64 {
+        let of = |(s, z): (&super::document::DesignedSet, &Vec<i64>)| {
+            s.space.ring(z) as f64 * if self.metric { s.module.unwrap_or(1.0) } else { 1.0 }
+        };
+        self.sets.iter().zip(teeth).map(of).fold(0.0, f64::max)
+    }
+
+    /// The value of an objective.
+    pub(crate) fn value(&self, objective: Objective, judged: &Judged, teeth: &Teeth) -> f64 {
+        match objective {
+            Objective::Error => judged.error,
+            Objective::RingDiameter => self.ring(teeth),
+            Objective::Forward => judged.forward,
+            Objective::Backward => judged.backward,
+            Objective::LockMargin => judged.lock_margin,
+            Objective::PlanetSpin => judged.planet_spin,
+            Objective::MemberSpeed => judged.member_speed,
+            Objective::ElementTorque => judged.element_torque.unwrap_or(0.0),
+        }
+    }
+
+    /// Objectives, all to be minimised.
+    pub(crate) fn point(&self, judged: &Judged, teeth: &Teeth) -> Vec<f64> {
+        let of = |o: &Objective| {
+            let value = self.value(*o, judged, teeth);
+            if o.is_better_high() { -value } else { value }
+        };
+        self.objectives.iter().map(of).collect()
+    }
+}
+
+/// The gears that the first variable of a set is made of.
+fn seeds(kind: SetKind) -> [usize; 3] {
+    match kind {
+        SetKind::Simple | SetKind::Wolfrom => [0, 1, 2],
+        SetKind::Ravigneaux => [1, 2, 3],
+    }
+}
+
+fn last_of(counts: &[u64]) -> u64 {
+    counts.last().copied().unwrap_or(0)
+}
+
+fn add(to: &mut [Stage], from: &[Stage]) {
+    for (a, b) in to.iter_mut().zip(from) {
+        a.trains += b.trains;
+        a.designs += b.designs;
+        for (x, y) in a.by_planets.0.iter_mut().zip(&b.by_planets.0) {
+            x.1 += y.1;
+        }
+    }
+}
+
+/// Numbers in a row as ranges.
+fn runs(steps: &[usize]) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+    steps.chunk_by(|a, b| a + 1 == *b).map(|c| c[0]..c[c.len() - 1] + 1)
+}
+
+/// Ranges in order, neighbours joined.
+fn joined(mut ranges: Vec<[u64; 2]>) -> Vec<[u64; 2]> {
+    ranges.sort_unstable();
+    let mut all: Vec<[u64; 2]> = vec![];
+    for r in ranges {
+        match all.last_mut().filter(|l| l[1] >= r[0]) {
+            Some(last) => last[1] = last[1].max(r[1]),
+            None => all.push(r),
+        }
+    }
+    all
+}
+
+/// Counts and judges what the loops find.
+struct Judge<'d> {
+    design: &'d Design,
+    part: Part,
+    single: bool,
+    needs: Needs,
+}
+
+impl Judge<'_> {
+    /// Beyond the stages of teeth: judges, counts, and offers to the front.
+    fn further(&mut self, from: usize, teeth: Teeth, trains: u64, designs: u64, by_planets: &[u64]) {
+        let design = self.design;
+        let Some(judged) = design.judge(&teeth, self.needs) else { return };
+        for (stage, meets) in self.part.tally[from..].iter_mut().zip(design.meets(&judged)) {
+            if !meets {
+                return;
+            }
+            stage.trains += trains;
+            stage.designs += designs;
+            for (x, n) in stage.by_planets.0.iter_mut().zip(by_planets) {
+                x.1 += n;
+            }
+        }
+        let point = design.point(&judged, &teeth);
+        if !self.part.front.refuses(&point) {
+            self.part.front.offer(point, teeth);
+        }
+    }
+}
+
+impl Receive for Judge<'_> {
+    fn single(&mut self, item: &Item) {
+        let stages = item.passed.len();
+        let each = |stage: usize| {
+            let bits = item.passed[stage];
+            item.embodiments.iter().enumerate().map(move |(k, e)| if bits >> k & 1 == 1 { u64::from(*e) } else { 0 })
+        };
+        for (s, stage) in self.part.tally.iter_mut().enumerate().take(stages) {
+            stage.trains += u64::from(item.passed[s] != 0);
+            // Before clearance short planets are not yet looked for.
+            for (x, n) in stage.by_planets.0.iter_mut().zip(each(s)) {
+                stage.designs += n;
+                x.1 += n;
+            }
+        }
+        if item.is_admissible() {
+            let by: Vec<u64> = each(stages - 1).collect();
+            self.further(stages, vec![item.teeth.clone()], 1, by.iter().sum(), &by);
+        }
+        debug_assert!(self.single);
+    }
+
+    fn coupled(&mut self, groups: &[&Group]) {
+        let stages = groups[0].trains.len();
+        let all = |of: &dyn Fn(&Group) -> u64| groups.iter().map(|g| of(g)).fold(1u64, u64::saturating_mul);
+        for (s, stage) in self.part.tally.iter_mut().enumerate().take(stages) {
+            stage.trains += all(&|g| g.trains[s]);
+            stage.designs += all(&|g| g.designs[s]);
+        }
+        let (trains, designs) = (all(&|g| last_of(&g.trains)), all(&|g| last_of(&g.designs)));
+        if trains > 0 {
+            // All items of a group move alike; the smallest stands for them.
+            let smallest = |(g, s): (&&Group, &super::document::DesignedSet)| {
+                let fit = g.items.iter().filter(|i| i.is_admissible());
+                fit.min_by_key(|i| (s.space.ring(&i.teeth), i.teeth.clone())).map(|i| i.teeth.clone())
+            };
+            let teeth: Option<Teeth> = groups.iter().zip(&self.design.sets).map(smallest).collect();
+            if let Some(teeth) = teeth {
+                self.further(stages, teeth, trains, designs, &[]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use willis::Model;
+    use willis::analysis::{Selection, Verdict, analyze};
+
+    /// Trains of the repository: the text, and for each designed set its gears as ranges.
+    fn cases() -> Vec<(&'static str, Vec<(&'static str, &'static str)>)> {
+        vec![
+            (
+                include_str!("../../../../examples/zf-8hp70.toml"),
+                vec![
+                    ("P1.sun.teeth", "40, 48"),
+                    ("P1.ring.teeth", "96"),
+                    ("P2.sun.teeth", "45, 48"),
+                    ("P2.ring.teeth", "95, 96"),
+                    ("P3.sun.teeth", "69, 71"),
+                    ("P4.sun.teeth", "23, 25"),
+                ],
+            ),
+            (
+                include_str!("../../../../examples/zf-6hp26.toml"),
+                vec![("front.sun.teeth", "35..38"), ("rear.small_sun.teeth", "29..33"), ("rear.large_sun.teeth", "38")],
+            ),
+            (
+                include_str!("../../../../examples/wolfrom-498-self-locking.toml"),
+                vec![
+                    ("P1.suns.0.teeth", "12..14"),
+                    ("P1.suns.0.planet_teeth", "33..36"),
+                    ("P1.rings.0.planet_teeth", "33..36"),
+                    ("P1.rings.0.teeth", "..90"),
+                    ("P1.rings.1.planet_teeth", "30..38"),
+                    ("P1.rings.1.teeth", "..90"),
+                ],
+            ),
+            (
+                include_str!("../../../../examples/simpson-ford-c4.toml"),
+                vec![("front.sun.teeth", "32..35"), ("rear.sun.teeth", "33"), ("rear.ring.teeth", "69..75")],
+            ),
+        ]
+    }
+
+    fn design(text: &str, ranges: &[(&str, &str)], rules: &str) -> Design {
+        let mut document: toml_edit::DocumentMut = text.parse().unwrap();
+        let model = Model::from_toml(text).unwrap();
+        for (path, range) in ranges {
+            let parts: Vec<&str> = path.split('.').collect();
+            let sets = document["set"].as_array_of_tables_mut().unwrap();
+            let mut item = &mut toml_edit::Item::None;
+            for t in sets.iter_mut() {
+                if t["name"].as_str() == Some(parts[0]) {
+                    item = t.get_mut(parts[1]).unwrap();
+                    break;
+                }
+            }
+            if let Ok(k) = parts[2].parse::<usize>() {
+                let table = item.as_array_mut().unwrap().get_mut(k).unwrap().as_inline_table_mut().unwrap();
+                table.insert(parts[3], (*range).into());
+            } else {
+                item[parts[2]] = toml_edit::value(*range);
+            }
+        }
+        let ratios = analyze(model.train(), &Selection::default()).unwrap().ratios;
+        let targets: Vec<String> = ratios
+            .iter()
+            .filter(|(_, r)| r.value.is_some_and(|v| v != 1.0))
+            .map(|(n, r)| {
+                let state = if n == "as drawn" { String::new() } else { format!("state = \"{n}\", ") };
+                format!("{{ {state}ratio = {:.4}, tolerance = 0.5, any_sign = true }}", r.value.unwrap())
+            })
+            .collect();
+        let wishes = format!("[design]\nmismatch = \"-1..1\"\nrules = {rules}\ntarget = [{}]", targets.join(", "));
+        let wishes: toml_edit::DocumentMut = wishes.parse().unwrap();
+        document["design"] = wishes["design"].clone();
+        let text = document.to_string();
+        Design::from_toml(&text).unwrap_or_else(|e| panic!("{}", e.render("design", &text, false)))
+    }
+
+    /// Every train of small spaces: ratios, efficiencies and verdicts are those of the certified solver.
+    #[test]
+    fn what_is_judged_is_what_is_certified() {
+        for (text, ranges) in cases() {
+            let design = design(text, &ranges, "[]");
+            let mut all: Vec<Teeth> = vec![];
+            design.for_each(|t| all.push(t.iter().map(|z| z.to_vec()).collect()));
+            assert!(all.len() > 3, "{}: {}", design.name, all.len());
+            for teeth in all.iter().step_by((all.len() / 12).max(1)) {
+                let states = design.certified(teeth).unwrap();
+                let y = design.variables(teeth);
+                for (k, target) in &design.targets {
+                    let row = states.get(&target.state).unwrap();
+                    let value = design.layout.states[*k].ratio.at(&y);
+                    assert!(
+                        (value / row.value.unwrap() - 1.0).abs() < 1e-9,
+                        "{} {teeth:?} {}",
+                        design.name,
+                        target.state
+                    );
+                    let mut one = design.clone();
+                    one.targets.retain(|t| t.0 == *k);
+                    let judged = one.judge(teeth, Needs { ways: true, ..Needs::default() }).unwrap();
+                    for (direction, mine) in [(&row.drive, judged.forward), (&row.coast, judged.backward)] {
+                        let expected = match direction.verdict {
+                            Verdict::Unique => direction.efficiency.unwrap(),
+                            Verdict::Locked => 0.0,
+                            other => panic!("{} {teeth:?} {}: {other:?}", design.name, target.state),
+                        };
+                        assert!(
+                            (mine - expected).abs() < 1e-9,
+                            "{} {teeth:?} {}: {mine} {expected}",
+                            design.name,
+                            target.state
+                        );
+                    }
+                    assert_eq!(judged.self_locking, row.coast.verdict == Verdict::Locked);
+                }
+            }
+        }
+    }
+
+    /// Windows find what trying every tooth number finds, with the ratios of the certified solver.
+    #[test]
+    fn windows_find_what_brute_force_finds() {
+        for (text, ranges) in cases() {
+            let wide = design(text, &ranges, "[]");
+            let mut all: Vec<Teeth> = vec![];
+            wide.for_each(|t| all.push(t.iter().map(|z| z.to_vec()).collect()));
+            let mut product = 1;
+            for s in &wide.sets {
+                product *= s.space.all().count();
+            }
+            for percent in [2, 5, 12] {
+                let mut narrow = wide.clone();
+                let tolerance = willis::exact::Rational::new(percent, 100);
+                for (_, t) in &mut narrow.targets {
+                    t.ratio = super::super::wish::Ratio::near(t.ratio.aim.clone(), &tolerance, false);
+                }
+                // The brute way: every combination of teeth, each ratio by elimination in rationals.
+                let lists: Vec<Vec<Vec<i64>>> = narrow.sets.iter().map(|s| s.space.all().collect()).collect();
+                let mut brute = 0;
+                for k in 0..product {
+                    let mut rest = k;
+                    let teeth: Teeth = lists
+                        .iter()
+                        .map(|l| {
+                            let item = l[rest % l.len()].clone();
+                            rest /= l.len();
+                            item
+                        })
+                        .collect();
+                    // Floating point first: most are far away.
+                    let y = narrow.variables(&teeth);
+                    let off = |f: f64| {
+                        narrow.targets.iter().all(|(s, t)| {
+                            t.ratio.deviation(narrow.layout.states[*s].ratio.at(&y)) <= f * percent as f64 / 100.0
+                        })
+                    };
+                    if !off(1.05) {
+                        continue;
+                    }
+                    let states = narrow.certified(&teeth).unwrap();
+                    brute += u64::from(narrow.targets.iter().all(|(_, t)| {
+                        let ratio = states.get(&t.state).and_then(|r| r.exact.clone());
+                        ratio.is_some_and(|r| t.ratio.windows.iter().any(|[a, b]| *a <= r && r <= *b))
+                    }));
+                }
+                assert_eq!(narrow.count().trains, brute, "{} {percent} %", narrow.name);
+            }
+        }
+    }
+
+    #[test]
+    fn parts_of_a_search_make_the_whole() {
+        let (text, ranges) = &cases()[2];
+        let design = design(text, ranges, r#"["assembly"]"#);
+        let serial = &willis::work::Serial;
+        let whole = design.search(Progress::default(), None, serial).unwrap();
+        let [a, b] = [1, 2].map(|k| design.search(Progress::default(), Some((k, 2)), serial).unwrap());
+        assert_ne!(a, whole);
+        assert!(design.merge(a.clone(), a.clone()).is_err());
+        assert_eq!(design.merge(a.clone(), b).unwrap(), whole);
+        // Interrupted, kept as text, and resumed.
+        let kept = serde_json::to_string(&a).unwrap();
+        let resumed = design.search(serde_json::from_str(&kept).unwrap(), None, serial).unwrap();
+        assert_eq!(resumed, whole);
+    }
+
+    #[test]
+    fn a_cancelled_search_says_what_is_done() {
+        struct Stops;
+        impl Work for Stops {
+            fn cancelled(&self) -> bool {
+                true
+            }
+        }
+        let (text, ranges) = &cases()[2];
+        let answer = design(text, ranges, "[]").answer(&super::super::report::Request::default(), &Stops).unwrap();
+        assert!(!answer.completeness.complete && answer.completeness.done == 0);
+        assert!(answer.completeness.statement.contains("0.0 % of the space is done"));
+    }
+}

@@ -1,0 +1,434 @@
+//! The tooth numbers that one set may have, ordered by its basic ratios.
+
+use std::sync::OnceLock;
+
+use super::fit::{self, Length, Ravigneaux, assembles_simple, compare, gcd, planets_clear, reduced};
+use super::layout::SetKind;
+use super::range::{Counts, MOST_TEETH};
+use super::rule::Rule;
+
+/// The least teeth that a ring must have more than its planet.
+const RING_OVER_PLANET: i64 = 8;
+/// So many numbers of planets are tried at most.
+pub(crate) const MOST_PLANETS: usize = 16;
+
+/// What the tooth numbers of a set may be, and what they must satisfy.
+///
+/// The ranges stand in the order of [`SetKind::gears`]; a Ravigneaux set has one more, for its short planets.
+///
+/// # Example
+/// Every train of three to five planets with a ratio k = r/s from 2.9 to 3.1:
+/// ```
+/// use willis_synthesis::teeth::{Counts, SetKind, SetSpace, Rule};
+///
+/// let gears = ["12..40", "12..40", "..120"].map(|t| t.parse::<Counts>().unwrap());
+/// let space = SetSpace::new(SetKind::Simple, gears.to_vec(), Counts::range(3, 5)).rules([Rule::Assembly, Rule::Clearance]);
+/// let found = space.all().filter(|t| (29 * t[0]..=31 * t[0]).contains(&(10 * t[2]))).count();
+/// assert_eq!(found, 47);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetSpace {
+    /// Its type.
+    pub kind: SetKind,
+    /// Ranges of its gears.
+    pub gears: Vec<Counts>,
+    /// Numbers of planets to choose from, ascending.
+    pub planets: Vec<i64>,
+    /// Differences from the teeth that gears without profile shift would need: `r − s − 2 p` and the like.
+    pub mismatch: Vec<i64>,
+    /// Least gap between the tips of neighbouring planets, modules.
+    pub gap: Length,
+    /// Rules in force, in the order of [`Rule::ALL`].
+    pub rules: Vec<Rule>,
+    /// Whether profile shifts are found for teeth: pressure angle and rack of the set.
+    pub(crate) rack: super::shift::Rack,
+    /// The largest ring.
+    pub(crate) ring_limit: Option<i64>,
+}
+
+/// Tooth numbers of one set, with what the rules say about each number of planets.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Item {
+    /// In the order of [`SetKind::gears`].
+    pub teeth: Vec<i64>,
+    /// For every stage (none, the first rule, the first two, …) the numbers of planets that pass, as bits.
+    pub(crate) passed: Vec<u16>,
+    /// For every number of planets so many short planets; ones for sets without.
+    pub(crate) embodiments: Vec<u32>,
+}
+
+/// Items of one basic ratio.
+#[derive(Debug)]
+pub(crate) struct Group {
+    pub value: f64,
+    pub exact: (i64, i64),
+    /// How many items pass each stage, and how many designs they are, with planets and short planets counted.
+    pub trains: Vec<u64>,
+    pub designs: Vec<u64>,
+    pub items: Vec<Item>,
+    /// For sets of two variables: the groups of the second one.
+    children: OnceLock<Vec<Group>>,
+    /// What the first gears of the items are, for making the children.
+    seeds: Vec<[i64; 3]>,
+}
+
+impl SetSpace {
+    /// A set with ranges, no rules, no mismatch and no gap.
+    pub fn new(kind: SetKind, gears: Vec<Counts>, planets: Counts) -> Self {
+        let planets = planets.within(1, 64).take(MOST_PLANETS).collect();
+        Self {
+            kind,
+            gears,
+            planets,
+            mismatch: vec![0],
+            gap: Length::ZERO,
+            rules: vec![],
+            rack: Default::default(),
+            ring_limit: None,
+        }
+    }
+
+    /// The same with these rules.
+    #[must_use]
+    pub fn rules(mut self, rules: impl IntoIterator<Item = Rule>) -> Self {
+        self.rules = rules.into_iter().collect();
+        self.rules.sort_unstable();
+        self.rules.dedup();
+        self
+    }
+
+    /// The same with these differences from the teeth that unshifted gears would need.
+    #[must_use]
+    pub fn mismatch(mut self, mismatch: impl IntoIterator<Item = i64>) -> Self {
+        self.mismatch = mismatch.into_iter().collect();
+        self.mismatch.sort_unstable();
+        self.mismatch.dedup();
+        self
+    }
+
+    /// The same with a gap between planets.
+    #[must_use]
+    pub fn gap(mut self, gap: Length) -> Self {
+        self.gap = gap;
+        self
+    }
+
+    /// How many stages there are: one for no rule, one for each.
+    pub(crate) fn stages(&self) -> usize {
+        self.rules.len() + 1 + usize::from(self.ring_limit.is_some())
+    }
+
+    fn gear(&self, k: usize) -> &Counts {
+        &self.gears[k]
+    }
+
+    /// All tooth numbers that follow every rule with some number of planets, set by set of first gears.
+    pub fn all(&self) -> impl Iterator<Item = Vec<i64>> + '_ {
+        let seeds = self.seeds();
+        let simple = self.kind == SetKind::Simple;
+        seeds.into_iter().flat_map(move |seed| {
+            let items: Vec<Item> = if simple { vec![self.item(seed.to_vec())] } else { self.second(seed) };
+            items.into_iter().filter(|i| i.passed.last().is_some_and(|p| *p != 0)).map(|i| i.teeth)
+        })
+    }
+
+    /// The gears that the first variable is made of: `s, p, r`; `s, p1, r1`; `s2, pL, r`.
+    fn seeds(&self) -> Vec<[i64; 3]> {
+        let [sun, planet, ring] = match self.kind {
+            SetKind::Simple | SetKind::Wolfrom => [0, 1, 2],
+            SetKind::Ravigneaux => [1, 2, 3],
+        };
+        let most = self.gear(ring).most().unwrap_or(MOST_TEETH).min(MOST_TEETH);
+        let mut all = vec![];
+        for s in self.gear(sun).within(1, most) {
+            for p in self.gear(planet).within(1, (most - s) / 2 + 2) {
+                for d in &self.mismatch {
+                    let r = s + 2 * p + d;
+                    if r > p && self.gear(ring).contains(r) {
+                        all.push([s, p, r]);
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// Items that grow from the first gears of a set with two variables.
+    fn second(&self, [s, p, r]: [i64; 3]) -> Vec<Item> {
+        let mut items = vec![];
+        match self.kind {
+            SetKind::Simple => {}
+            SetKind::Wolfrom => {
+                let most = self.gear(4).most().unwrap_or(MOST_TEETH);
+                for p2 in self.gear(3).within(1, most - s - p + 2) {
+                    for d in &self.mismatch {
+                        let r2 = s + p + p2 + d;
+                        if r2 > p2 && self.gear(4).contains(r2) {
+                            items.push(self.item(vec![s, p, r, p2, r2]));
+                        }
+                    }
+                }
+            }
+            SetKind::Ravigneaux => {
+                items.extend(self.gear(0).within(1, r - 1).map(|s1| self.item(vec![s1, s, p, r])));
+            }
+        }
+        items
+    }
+
+    /// Judges tooth numbers.
+    pub(crate) fn item(&self, teeth: Vec<i64>) -> Item {
+        let all: u16 = ((1u32 << self.planets.len()) - 1) as u16;
+        let mut passed = vec![all];
+        let mut embodiments = vec![1; self.planets.len()];
+        let mut now = all;
+        for rule in &self.rules {
+            if now != 0 {
+                now = self.judge(*rule, &teeth, now);
+                if *rule == Rule::Clearance && self.kind == SetKind::Ravigneaux {
+                    let before = now;
+                    for (k, n) in self.planets.iter().enumerate().filter(|(k, _)| before >> k & 1 == 1) {
+                        embodiments[k] = self.shorts(&teeth, *n).count() as u32;
+                        if embodiments[k] == 0 {
+                            now &= !(1 << k);
+                        }
+                    }
+                }
+            }
+            passed.push(now);
+        }
+        if let Some(limit) = self.ring_limit {
+            passed.push(if self.ring(&teeth) <= limit { now } else { 0 });
+        }
+        Item { teeth, passed, embodiments }
+    }
+
+    /// The numbers of planets, as bits, with which teeth of a set without short planets follow all rules.
+    pub(crate) fn admitted(&self, teeth: &[i64]) -> u16 {
+        let all = ((1u32 << self.planets.len()) - 1) as u16;
+        if self.ring_limit.is_some_and(|limit| self.ring(teeth) > limit) {
+            return 0;
+        }
+        self.rules.iter().fold(all, |now, rule| if now == 0 { 0 } else { self.judge(*rule, teeth, now) })
+    }
+
+    /// Teeth of the largest ring.
+    pub(crate) fn ring(&self, teeth: &[i64]) -> i64 {
+        match self.kind {
+            SetKind::Simple => teeth[2],
+            SetKind::Wolfrom => teeth[2].max(teeth[4]),
+            SetKind::Ravigneaux => teeth[3],
+        }
+    }
+
+    /// Short planets that fit a Ravigneaux set with so many planets.
+    pub(crate) fn shorts<'a>(&'a self, teeth: &[i64], planets: i64) -> impl Iterator<Item = i64> + 'a {
+        let set = Ravigneaux { small_sun: teeth[0], large_sun: teeth[1], long: teeth[2], ring: teeth[3] };
+        let range = self.gears.get(4).map(|c| c.within(1, set.ring));
+        range.into_iter().flatten().filter(move |p| set.short_fits(*p, planets, self.gap))
+    }
+
+    /// The short planet that a Ravigneaux set gets: the first that fits, else one like the long planet. None for others.
+    pub(crate) fn shorts_or_long(&self, teeth: &[i64], planets: i64) -> Option<i64> {
+        (self.kind == SetKind::Ravigneaux).then(|| self.shorts(teeth, planets).next().unwrap_or(teeth[2]))
+    }
+
+    /// How many coaxial tooth numbers there are, without short planets.
+    pub(crate) fn size(&self) -> f64 {
+        let seeds = self.seeds();
+        match self.kind {
+            SetKind::Simple => seeds.len() as f64,
+            SetKind::Ravigneaux => seeds.iter().map(|s| self.gear(0).within(1, s[2] - 1).count() as f64).sum(),
+            SetKind::Wolfrom => {
+                let (planet, ring) = (self.gear(3), self.gear(4));
+                let most = ring.most().unwrap_or(MOST_TEETH);
+                let of = |[s, p, _]: &[i64; 3]| -> f64 {
+                    let fits = |d: &i64| {
+                        let a = s + p + d;
+                        let low = (ring.least().unwrap_or(1) - a).max(1);
+                        if ring.is_gapless() {
+                            planet.within(low, most - a).count()
+                        } else {
+                            planet.within(low, most - a).filter(|p2| ring.contains(a + p2)).count()
+                        }
+                    };
+                    self.mismatch.iter().map(fits).sum::<usize>() as f64
+                };
+                seeds.iter().map(of).sum()
+            }
+        }
+    }
+
+    /// The numbers of planets that pass a rule.
+    fn judge(&self, rule: Rule, z: &[i64], now: u16) -> u16 {
+        let each = |test: &dyn Fn(i64) -> bool| {
+            let passes = |(k, n): (usize, &i64)| u16::from(now >> k & 1 == 1 && test(*n)) << k;
+            self.planets.iter().enumerate().map(passes).sum()
+        };
+        let whole = |test: bool| if test { now } else { 0 };
+        let prime = |a: i64, b: i64| gcd(a, b) == 1;
+        match (self.kind, rule) {
+            (SetKind::Simple, Rule::Assembly) => each(&|n| assembles_simple(z[0], z[2], n)),
+            (SetKind::Wolfrom, Rule::Assembly) => {
+                // As `assembles_across`, with the common divisor found once.
+                let sum = z[0] + z[2];
+                if self.planets.iter().all(|n| sum % n != 0) {
+                    return 0;
+                }
+                let across = (z[2] * z[3] - z[4] * z[1]) / gcd(z[1], z[3]);
+                each(&|n| sum % n == 0 && across % n == 0)
+            }
+            (SetKind::Ravigneaux, Rule::Assembly) => each(&|n| Ravigneaux::of(z).assembles(n)),
+            (SetKind::Simple, Rule::Clearance) => each(&|n| planets_clear((z[0] + z[2], 2), n, z[1], self.gap)),
+            (SetKind::Wolfrom, Rule::Clearance) => {
+                let sum = z[0] + z[1] + z[2] - z[1] + z[4] - z[3];
+                each(&|n| planets_clear((sum, 3), n, z[1].max(z[3]), self.gap))
+            }
+            (SetKind::Ravigneaux, Rule::Clearance) => each(&|n| Ravigneaux::of(z).long_clears(n, self.gap)),
+            (SetKind::Simple, Rule::Interference) => whole(z[2] - z[1] >= RING_OVER_PLANET),
+            (SetKind::Wolfrom, Rule::Interference) => {
+                whole(z[2] - z[1] >= RING_OVER_PLANET && z[4] - z[3] >= RING_OVER_PLANET)
+            }
+            (SetKind::Ravigneaux, Rule::Interference) => whole(z[3] - z[2] >= RING_OVER_PLANET),
+            (SetKind::Simple, Rule::Hunting) => whole(prime(z[0], z[1]) && prime(z[2], z[1])),
+            (SetKind::Wolfrom, Rule::Hunting) => whole(prime(z[0], z[1]) && prime(z[1], z[2]) && prime(z[3], z[4])),
+            (SetKind::Ravigneaux, Rule::Hunting) => whole(prime(z[1], z[2]) && prime(z[2], z[3])),
+            (SetKind::Simple, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[2] % n == 0),
+            (SetKind::Wolfrom, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[2] % n == 0 && z[4] % n == 0),
+            (SetKind::Ravigneaux, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[1] % n == 0 && z[3] % n == 0),
+            (SetKind::Simple | SetKind::Wolfrom, Rule::InSequence) => each(&|n| prime(z[0], n)),
+            (SetKind::Ravigneaux, Rule::InSequence) => each(&|n| prime(z[0], n) && prime(z[1], n)),
+            (_, Rule::Shifts) => whole(super::shift::shifts(self.kind, z, self.rack).is_some()),
+        }
+    }
+
+    /// The groups of the first variable, ascending. Without `every_stage` only what follows all rules.
+    pub(crate) fn groups(&self, every_stage: bool) -> Vec<Group> {
+        let mut seeds = self.seeds();
+        let key = |z: &[i64; 3]| reduced(z[2], z[0]);
+        seeds.sort_by(|a, b| compare((a[2], a[0]), (b[2], b[0])).then_with(|| a.cmp(b)));
+        let mut groups: Vec<Group> = vec![];
+        for seed in seeds {
+            let mut items = vec![];
+            if self.kind == SetKind::Simple {
+                if every_stage || self.admitted(&seed) != 0 {
+                    items.push(self.item(seed.to_vec()));
+                }
+                if items.is_empty() {
+                    continue;
+                }
+            }
+            let exact = key(&seed);
+            match groups.last_mut().filter(|g| g.exact == exact) {
+                Some(g) => {
+                    g.items.extend(items);
+                    g.seeds.push(seed);
+                }
+                None => groups.push(Group::new(exact, items, vec![seed])),
+            }
+        }
+        for g in &mut groups {
+            g.count(self.stages());
+        }
+        groups
+    }
+
+    /// Bounds of its variables; none where it has no teeth.
+    pub(crate) fn bounds(&self) -> Option<Vec<[f64; 2]>> {
+        let of = |z: &[i64; 3]| z[2] as f64 / z[0] as f64;
+        let seeds = self.seeds();
+        let first = seeds.iter().map(of).fold([f64::INFINITY, 0.0], |b: [f64; 2], y| [b[0].min(y), b[1].max(y)]);
+        let all = if self.kind.variables() == 1 { vec![first] } else { vec![first, self.second_bounds()] };
+        (!seeds.is_empty() && all.iter().all(|b| b[0] > 0.0 && b[1].is_finite())).then_some(all)
+    }
+
+    /// Bounds of the second variable.
+    pub(crate) fn second_bounds(&self) -> [f64; 2] {
+        let least = |k: usize| self.gear(k).least().unwrap_or(1).max(1) as f64;
+        let most = |k: usize| self.gear(k).most().unwrap_or(MOST_TEETH).min(MOST_TEETH) as f64;
+        match self.kind {
+            SetKind::Simple => [0.0, f64::INFINITY],
+            SetKind::Wolfrom => {
+                let biggest = most(2).min(2.0 * most(1) + most(0) + 2.0);
+                let p1 = most(1).min(biggest / 2.0 + 1.0);
+                [least(1) / most(0).min(biggest) * 1.0, p1 * most(4).min(MOST_TEETH as f64) / (least(0) * least(3))]
+            }
+            SetKind::Ravigneaux => [1.0, most(3) / least(0)],
+        }
+    }
+}
+
+impl Ravigneaux {
+    fn of(z: &[i64]) -> Self {
+        Self { small_sun: z[0], large_sun: z[1], long: z[2], ring: z[3] }
+    }
+}
+
+impl Group {
+    fn new(exact: (i64, i64), items: Vec<Item>, seeds: Vec<[i64; 3]>) -> Self {
+        Self {
+            value: exact.0 as f64 / exact.1 as f64,
+            exact,
+            trains: vec![],
+            designs: vec![],
+            items,
+            children: OnceLock::new(),
+            seeds,
+        }
+    }
+
+    fn count(&mut self, stages: usize) {
+        self.trains = (0..stages).map(|s| self.items.iter().filter(|i| i.passed[s] != 0).count() as u64).collect();
+        self.designs = (0..stages).map(|s| self.items.iter().map(|i| i.designs(s)).sum()).collect();
+    }
+
+    /// The groups of the second variable.
+    pub fn children(&self, space: &SetSpace, every_stage: bool) -> &[Self] {
+        self.children.get_or_init(|| {
+            let mut items: Vec<((i64, i64), Item)> = vec![];
+            for seed in &self.seeds {
+                for item in space.second(*seed) {
+                    if every_stage || item.is_admissible() {
+                        let z = &item.teeth;
+                        let y = match space.kind {
+                            SetKind::Wolfrom => reduced(z[1] * z[4], z[0] * z[3]),
+                            SetKind::Simple | SetKind::Ravigneaux => reduced(z[3], z[0]),
+                        };
+                        items.push((y, item));
+                    }
+                }
+            }
+            items.sort_by(|a, b| compare(a.0, b.0).then_with(|| a.1.teeth.cmp(&b.1.teeth)));
+            let mut groups: Vec<Self> = vec![];
+            for (exact, item) in items {
+                match groups.last_mut().filter(|g| g.exact == exact) {
+                    Some(g) => g.items.push(item),
+                    None => groups.push(Self::new(exact, vec![item], vec![])),
+                }
+            }
+            for g in &mut groups {
+                g.count(space.stages());
+            }
+            groups
+        })
+    }
+}
+
+impl Item {
+    /// How many designs it is at a stage: numbers of planets, with the short planets of each.
+    pub(crate) fn designs(&self, stage: usize) -> u64 {
+        let bits = self.passed[stage];
+        let of = self.embodiments.iter().enumerate().filter(|(k, _)| bits >> k & 1 == 1);
+        of.map(|(_, e)| u64::from(*e)).sum()
+    }
+
+    /// Whether it follows all rules with some number of planets.
+    pub(crate) fn is_admissible(&self) -> bool {
+        self.passed.last().is_some_and(|p| *p != 0)
+    }
+
+    /// The phase of its meshes at the sun.
+    pub(crate) fn phase(&self, sun: usize, planets: i64) -> fit::Phase {
+        fit::phase(self.teeth[sun], planets)
+    }
+}

@@ -1,0 +1,6 @@
+//! Tooth numbers: counts that an exhaustive search must reproduce exactly, each found in at least two ways.
+
+mod counts;
+mod files;
+mod layouts;
+mod speed;
