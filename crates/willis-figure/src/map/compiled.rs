@@ -229,7 +229,7 @@ impl CompiledProbe {
                 // Round-off, or a border; written so that what is no number is asked the long way too.
                 let plain = w.abs() > ROUND_OFF * largest;
                 match (plain, p.idle) {
-                    (true, false) => found[p.place] = p.ways[usize::from(w < 0.0)].clone(),
+                    (true, false) => found[p.place] = p.ways[usize::from(w < 0.0)],
                     (false, true) => {}
                     _ => return None,
                 }

@@ -98,6 +98,7 @@ impl PointNumbers {
 }
 
 /// What is told of a point.
+#[expect(clippy::large_enum_variant, reason = "one at a time on the stack; a box would allocate at every point")]
 pub(crate) enum Told {
     /// All that is known, with its warnings and notes.
     Whole(Box<OperationReport>, Diagnostics),
