@@ -234,7 +234,7 @@ impl Scheme {
         let states = states(&ratios, &layout, &elements, wish.closed);
         let chain = chain(wish, &states);
         let reverse = reverse(wish, &states);
-        if chain.len() < wish.forward || reverse.len() < wish.reverse {
+        if chain.len() < wish.forward.max(1) || reverse.len() < wish.reverse {
             return None;
         }
         let names = shaft_names(&layout);

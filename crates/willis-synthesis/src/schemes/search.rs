@@ -554,8 +554,8 @@ mod tests {
 
     use willis::work::Serial;
 
-    use super::super::scheme::{State, chain, reverse};
     use super::*;
+    use crate::schemes::scheme::{State, chain, reverse};
 
     /// Rank by elimination over rational numbers.
     fn rank(mut rows: Vec<Vec<Rational>>) -> usize {
