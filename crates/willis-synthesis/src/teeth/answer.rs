@@ -29,6 +29,8 @@ pub struct DesignAnswer {
     pub waterfall: Vec<Stage>,
     /// What rows are judged by; the first one is that by which they are sorted unless another was asked for.
     pub objectives: Vec<Objective>,
+    /// With which losses efficiencies were computed that ranked the trains, in words.
+    pub ranked_by: String,
     /// How many trains no other one beats in every objective.
     pub front: u64,
     /// The trains shown: those of the front, as many as were asked for.

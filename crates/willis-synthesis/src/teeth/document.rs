@@ -204,7 +204,11 @@ impl Reader<'_> {
         for value in list {
             match value.as_str().map(str::parse::<T>) {
                 Some(Ok(t)) => found.push(t),
-                Some(Err(d)) => self.report(*d, place, value.span()),
+                Some(Err(mut d)) => {
+                    // What replaces a text is a text.
+                    d.replacement = d.replacement.map(|r| format!("\"{r}\""));
+                    self.report(*d, place, value.span());
+                }
                 None => self.kind(place, item, "a list of names"),
             }
         }
@@ -584,7 +588,7 @@ impl Design {
             }
             let mut gears = vec![];
             for path in paths(kind) {
-                let full = format!("{place}.{path}");
+                let full = format!("{place}.{}", path.replace(".0.", "[0].").replace(".1.", "[1]."));
                 gears.push(match at(&set, path) {
                     Some(item) => r.counts(&full, item),
                     None if path.contains("planet") => Some(Counts::range(6, super::range::MOST_TEETH)),

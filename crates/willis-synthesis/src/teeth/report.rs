@@ -120,6 +120,7 @@ impl Design {
             completeness: Completeness { complete, done, of: progress.of, statement },
             waterfall: progress.waterfall,
             objectives: self.objectives.clone(),
+            ranked_by: "the mesh efficiencies of the file, whatever the load and speed are".into(),
             front: front.len() as u64,
             rows,
             relaxations,

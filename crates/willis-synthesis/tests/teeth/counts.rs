@@ -350,7 +350,30 @@ pub fn eight_speeds(id: &str, suns: &str, planet: &str, ring: &str, planets: &st
 #[test]
 fn eight_speeds_of_four_sets() {
     let (p, design) = eight_speeds("8hp70", "20..72", "15..", "..120", "3..5");
-    assert_eq!(design.count().trains, number(&p["results"]["tooth_combinations"]));
+    let r = &p["results"];
+    assert_eq!(design.count().trains, number(&r["tooth_combinations"]));
+    // Every one of them by itself: distinct basic ratios, and the least largest deviation.
+    let ratio = |z: &[i64]| {
+        let g = willis_synthesis::teeth::fit::gcd(z[2], z[0]);
+        (z[2] / g, z[0] / g)
+    };
+    let mut distinct = std::collections::HashSet::new();
+    let mut trains = 0;
+    design.for_each(|t| {
+        trains += 1;
+        distinct.insert([0, 1, 2, 3].map(|k| ratio(t[k])));
+    });
+    assert_eq!(trains, number(&r["tooth_combinations"]));
+    assert_eq!(distinct.len() as u64, number(&r["distinct_ratio_quadruples"]));
+    let found = answer(&design);
+    assert_eq!((found.front, found.waterfall.last().unwrap().trains), (1, trains));
+    let best: Vec<String> = found.rows[0]
+        .sets
+        .iter()
+        .map(|(_, s)| Rational::new(*s.teeth.get("ring").unwrap(), *s.teeth.get("sun").unwrap()).to_string())
+        .collect();
+    assert_eq!(serde_json::json!(best), r["best_k1_k2_k3_k4"]);
+    assert!((found.rows[0].error - r["best_max_deviation"].as_f64().unwrap()).abs() < 1e-12);
 }
 
 #[test]

@@ -101,6 +101,7 @@ fn what_is_wrong_is_said_with_its_place() {
     assert_eq!(wrong(&text(&format!("{target}\nrequire = {{ forward = 1.2 }}"))).2, "no efficiency is above 1: 1.2");
     assert_eq!(wrong(&simple("12..14", "..20", target)).0, "E106");
     let e = Design::from_toml(&text(&format!("{target}\nrules = [\"asembly\"]"))).unwrap_err();
+    assert_eq!(e.iter().next().unwrap().replacement.as_deref(), Some("\"assembly\""));
     assert!(e.iter().next().unwrap().span.is_some_and(|s| s.lines.is_some()));
     // Too large a space is refused before anything is done.
     let wish = "planets = 3\ntarget = [{ ratio = 100 }]";
