@@ -589,7 +589,8 @@ class AnalyzeBeyondLimit(Record):
         """What it may be at most (or, of a ratio, at least), SI."""
 
 class AnalyzeContactReport(Record):
-    """A tooth contact in an operating point. Loads are those of one of the pairs in parallel."""
+    """A tooth contact in an operating point. Loads are the mean of the pairs in parallel, pressures and films those of
+    the pair that is loaded most (``load_sharing_factor``)."""
     @property
     def friction(self) -> float | None:
         """Mean coefficient of friction; absent when the efficiency is given, or nothing is loaded."""
