@@ -241,7 +241,7 @@ initial_speeds = { sun = \"1500 rpm\" }
 ";
     let (report, _) = run(&train(scenario), "down");
     assert!(report.final_speeds_rad_s.iter().all(|(_, w)| *w == 0.0), "{:?}", report.final_speeds_rad_s);
-    assert!(report.assumptions.iter().any(|a| a.contains("with oil of constant 60 °C")), "{:?}", report.assumptions);
+    assert!(report.assumptions.iter().any(|a| a.contains("with oil of constant 80 °C")), "{:?}", report.assumptions);
 }
 
 #[test]

@@ -39,6 +39,7 @@ use crate::real::abs;
 ///     base_helix: 20.61061429628295f64.to_radians(),
 ///     e: [0.7589558, 0.7488578],
 ///     overlap_ratio: 1.3628,
+///     operating_helix: 22f64.to_radians(),
 /// };
 /// assert_eq!(format!("{:.5}", Uniform::DEFAULT.eval(&path)), "0.15393");
 /// assert!(Uniform::DEFAULT.outside(&path).is_empty());
