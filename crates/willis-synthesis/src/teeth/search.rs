@@ -683,11 +683,18 @@ mod tests {
     use willis::Model;
     use willis::analysis::{Selection, Verdict, analyze};
 
+    /// A train of the repository, which is no part of the package.
+    macro_rules! example {
+        ($name:literal) => {
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/", $name))
+        };
+    }
+
     /// Trains of the repository: the text, and for each designed set its gears as ranges.
     fn cases() -> Vec<(&'static str, Vec<(&'static str, &'static str)>)> {
         vec![
             (
-                include_str!("../../../../examples/zf-8hp70.toml"),
+                example!("zf-8hp70.toml"),
                 vec![
                     ("P1.sun.teeth", "40, 48"),
                     ("P1.ring.teeth", "96"),
@@ -698,11 +705,11 @@ mod tests {
                 ],
             ),
             (
-                include_str!("../../../../examples/zf-6hp26.toml"),
+                example!("zf-6hp26.toml"),
                 vec![("front.sun.teeth", "35..38"), ("rear.small_sun.teeth", "29..33"), ("rear.large_sun.teeth", "38")],
             ),
             (
-                include_str!("../../../../examples/wolfrom-498-self-locking.toml"),
+                example!("wolfrom-498-self-locking.toml"),
                 vec![
                     ("P1.suns.0.teeth", "12..14"),
                     ("P1.suns.0.planet_teeth", "33..36"),
@@ -713,7 +720,7 @@ mod tests {
                 ],
             ),
             (
-                include_str!("../../../../examples/simpson-ford-c4.toml"),
+                example!("simpson-ford-c4.toml"),
                 vec![("front.sun.teeth", "32..35"), ("rear.sun.teeth", "33"), ("rear.ring.teeth", "69..75")],
             ),
         ]
