@@ -101,8 +101,9 @@ test("an error in the file: its line, the last good train, and the way back", { 
   assert.ok((await dots(page)).length > 5);
   assert.ok((await page.evaluate(() => Number(getComputedStyle(document.querySelector("main")).opacity))) < 0.6);
   await page.locator(".broken button", { hasText: "Undo" }).click();
+  // Until the answer is there the file counts as broken.
+  await page.waitForSelector(".broken", { state: "detached" });
   await shown(page);
-  assert.equal(await page.locator(".broken").count(), 0);
   await page.context().close();
 });
 
