@@ -67,7 +67,7 @@ class Store {
   #past = $state.raw<Step[]>([]);
   #future = $state.raw<Step[]>([]);
   #before: Step | null = null;
-  #typed = 0;
+  #typed = -Infinity;
   #generation = 0;
   #frame = 0;
 
