@@ -8,6 +8,7 @@ use willis::work::Serial;
 use willis_synthesis::teeth::{Design, Request};
 
 fn main() -> ExitCode {
+    // The first is the name of the program.
     let mut arguments = std::env::args().skip(1);
     let (Some(file), row) = (arguments.next(), arguments.next().and_then(|r| r.parse::<usize>().ok())) else {
         eprintln!("design FILE.toml [ROW]");

@@ -26,7 +26,6 @@ mod motion;
 mod planar;
 mod points;
 mod report;
-mod residue;
 mod scheme;
 mod search;
 mod table;

@@ -6,6 +6,7 @@
 //! `i128` until it no longer fits, then a big integer; no operation can overflow or round.
 
 mod polyhedron;
+pub mod residue;
 
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -20,6 +21,7 @@ use serde::de::{Deserialize, Deserializer, Error, Unexpected};
 use serde::ser::{Serialize, Serializer};
 
 pub(crate) use polyhedron::Polyhedron;
+use residue::{PRIME, times};
 
 /// An exact rational number, as small as it can be and as large as it must be.
 ///
@@ -63,17 +65,12 @@ impl Rational {
             let class: BigInt = ((n % PRIME) + PRIME) % PRIME;
             class.to_u64().expect("below the prime")
         };
-        // A division of single words is much shorter than one of double words.
-        let small = |n: i128| match i64::try_from(n) {
-            Ok(n) => n.rem_euclid(PRIME as i64) as u64,
-            Err(_) => n.rem_euclid(i128::from(PRIME)) as u64,
-        };
         let [numerator, denominator] = match &self.0 {
-            Repr::Small(r) => [small(*r.numer()), small(*r.denom())],
+            Repr::Small(r) => [residue::of(*r.numer()), residue::of(*r.denom())],
             Repr::Big(r) => [big(r.numer()), big(r.denom())],
         };
         (denominator != 0)
-            .then(|| if denominator == 1 { numerator } else { times(numerator, power(denominator, PRIME - 2)) })
+            .then(|| if denominator == 1 { numerator } else { times(numerator, residue::inverse(denominator)) })
     }
 
     /// The exact value of the shortest decimal that reads back as `value`: `0.98` becomes 49/50,
@@ -552,41 +549,17 @@ fn is_regular_modulo(matrix: &Matrix) -> bool {
         m.swap(p, c);
         let (done, rest) = m.split_at_mut(c + 1);
         let pivot = &done[c];
-        let inverse = power(pivot[c], PRIME - 2);
+        let inverse = residue::inverse(pivot[c]);
         for row in rest.iter_mut().filter(|row| row[c] != 0) {
             let factor = times(row[c], inverse);
             for k in c..n {
                 if pivot[k] != 0 {
-                    row[k] = (row[k] + PRIME - times(factor, pivot[k])) % PRIME;
+                    row[k] = residue::minus(row[k], times(factor, pivot[k]));
                 }
             }
         }
     }
     true
-}
-
-/// 2⁶¹ − 1, a Mersenne prime.
-pub(crate) const PRIME: u64 = (1 << 61) - 1;
-
-/// Product of two classes. As 2⁶¹ is one there, the upper bits of the product are added to the lower: no division.
-#[inline]
-pub(crate) fn times(a: u64, b: u64) -> u64 {
-    let product = u128::from(a) * u128::from(b);
-    let sum = (product as u64 & PRIME) + (product >> 61) as u64;
-    if sum >= PRIME { sum - PRIME } else { sum }
-}
-
-/// Power of a class; that of exponent `PRIME - 2` is its inverse.
-pub(crate) fn power(mut base: u64, mut exponent: u64) -> u64 {
-    let mut result = 1;
-    while exponent > 0 {
-        if exponent & 1 == 1 {
-            result = times(result, base);
-        }
-        base = times(base, base);
-        exponent >>= 1;
-    }
-    result
 }
 
 /// Determinant of a square matrix.

@@ -357,7 +357,7 @@ pub(crate) struct Physics<'t, R: Real = f64> {
 }
 
 /// What laws say of a solved step beside its losses.
-pub(crate) struct Told {
+pub(crate) struct Reports {
     /// The contact of each mesh with teeth.
     pub contacts: Named<ContactReport>,
     pub bearings: Named<BearingReport>,
@@ -869,13 +869,13 @@ impl Physics<'_> {
     }
 
     /// What the laws say of a solved step beside its losses.
-    pub fn told(&self, step: &Step, flow: &Flow) -> Told {
+    pub fn reports(&self, step: &Step, flow: &Flow) -> Reports {
         let mut beyond = Some(vec![]);
         let contacts = self.contacts(step, flow, &mut beyond);
         let mut extrapolations = beyond.unwrap_or_default();
         let (bearings, shafts) = self.bearings(step, flow, &mut extrapolations);
         self.wet_extrapolations(&flow.speeds, &mut extrapolations);
-        Told { contacts, bearings, shafts, extrapolations }
+        Reports { contacts, bearings, shafts, extrapolations }
     }
 
     /// The contact of each mesh with teeth, with its losses in this flow.

@@ -19,9 +19,9 @@ use willis::work::{Effort, Work, map};
 use super::layout::{GROUND, Layout, Layouts, OUTPUT, Prefix, shaft_digit};
 use super::motion::{self, MAX_MOBILITY, Motion};
 use super::points::{Points, direction};
-use super::residue;
 use super::table::binomial;
 use super::wish::SetRatio;
+use willis::exact::residue;
 
 const MOTORS: [u8; 2] = [3, 4];
 /// Engine, output, motors.

@@ -2,7 +2,7 @@
 
 use super::layout::{GROUND, INPUT, Layout, OUTPUT};
 use super::motion::{MAX_MOBILITY, Motion, Teeth};
-use super::residue;
+use willis::exact::residue;
 
 /// Coordinates that differ by less may be equal; those that differ by more are not. The coordinates of a point are
 /// correctly rounded quotients of integers between -1 and 1, so their error is 1e-16.

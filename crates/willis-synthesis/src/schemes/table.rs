@@ -14,7 +14,7 @@ use willis::exact::Rational;
 use super::layout::Layout;
 use super::motion::{self, MAX_MOBILITY};
 use super::points::Points;
-use super::residue;
+use willis::exact::residue;
 
 /// Numbers that differ by less, as a fraction, may be equal.
 pub(crate) const NEAR: f64 = 1e-8;

@@ -1,5 +1,7 @@
 //! Speeds as polynomials in the basic ratios of the sets: determinants that are linear in each of them.
 
+use willis::exact::residue::{self, minus, plus, times};
+
 /// A polynomial of degree at most one in each of its variables: the coefficient at position `mask` belongs to the product
 /// of the variables whose bits are set.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,25 +23,6 @@ pub(crate) struct Row {
     pub variable: Option<usize>,
 }
 
-/// A prime, 2⁶¹ − 1: ranks of matrices with variables are found at a point modulo it.
-const PRIME: u64 = (1 << 61) - 1;
-
-fn product(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
-}
-
-fn inverse(a: u64) -> u64 {
-    let (mut result, mut base, mut power) = (1, a, PRIME - 2);
-    while power > 0 {
-        if power & 1 == 1 {
-            result = product(result, base);
-        }
-        base = product(base, base);
-        power >>= 1;
-    }
-    result
-}
-
 /// How the columns of a system of equations depend on each other, for almost all values of the variables.
 pub(crate) struct Structure {
     /// Rows that are independent.
@@ -52,13 +35,13 @@ pub(crate) struct Structure {
 
 /// Eliminates the columns in their order at a point that is as good as random.
 pub(crate) fn structure(rows: &[Row], order: &[usize]) -> Structure {
-    let class = |x: i64| x.rem_euclid(PRIME as i64) as u64;
-    let point = |v: usize| product(0x1234_5678_9abc_def1 % PRIME, (v as u64 + 3).pow(7) ^ 0x5_5555_5555);
+    let class = |x: i64| residue::of(x.into());
+    let point = |v: usize| times(residue::of(0x1234_5678_9abc_def1), residue::power(v as u64 + 3, 7) ^ 0x5_5555_5555);
     let mut matrix: Vec<Vec<u64>> = rows
         .iter()
         .map(|r| {
             let y = r.variable.map_or(0, point);
-            r.base.iter().zip(&r.slope).map(|(b, s)| (class(*b) + product(y, class(*s))) % PRIME).collect()
+            r.base.iter().zip(&r.slope).map(|(b, s)| plus(class(*b), times(y, class(*s)))).collect()
         })
         .collect();
     let mut at: Vec<usize> = (0..rows.len()).collect();
@@ -71,13 +54,14 @@ pub(crate) fn structure(rows: &[Row], order: &[usize]) -> Structure {
         };
         matrix.swap(rank, best);
         at.swap(rank, best);
-        let scale = inverse(matrix[rank][column]);
-        let pivot: Vec<u64> = matrix[rank].iter().map(|x| product(*x, scale)).collect();
-        for row in matrix.iter_mut().skip(rank + 1) {
+        let scale = residue::inverse(matrix[rank][column]);
+        let pivot: Vec<u64> = matrix[rank].iter().map(|x| times(*x, scale)).collect();
+        // The rows below the pivot: those above it are done.
+        for row in &mut matrix[rank + 1..] {
             let factor = row[column];
             if factor != 0 {
                 for (x, p) in row.iter_mut().zip(&pivot) {
-                    *x = (*x + PRIME - product(factor, *p)) % PRIME;
+                    *x = minus(*x, times(factor, *p));
                 }
             }
         }

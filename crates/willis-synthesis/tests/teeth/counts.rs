@@ -20,6 +20,14 @@ fn answer(design: &Design) -> DesignAnswer {
     design.answer(&Request::default(), &Serial).unwrap()
 }
 
+/// The ratio wanted in each state.
+fn targets(parameters: &Value, states: &[&str]) -> String {
+    let ratios = parameters["targets"].as_array().unwrap().iter().map(|t| t.as_str().unwrap());
+    let all: Vec<String> =
+        ratios.zip(states).map(|(ratio, state)| format!("{{ state = \"{state}\", ratio = {ratio} }}")).collect();
+    all.join(", ")
+}
+
 fn number(v: &Value) -> u64 {
     v.as_u64().unwrap_or_else(|| panic!("{v} is no number"))
 }
@@ -251,19 +259,12 @@ fn simpson() {
 fn lepelletier() {
     let p = problem("lepelletier-6hp26");
     let (a, r) = (&p["parameters"], &p["results"]);
-    let names = ["1", "2", "3", "4", "5", "6", "R"];
-    let targets: Vec<String> = a["targets"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .zip(names)
-        .map(|(t, n)| format!("{{ state = \"{n}\", ratio = {} }}", t.as_str().unwrap()))
-        .collect();
+    let targets = targets(a, &["1", "2", "3", "4", "5", "6", "R"]);
     let layout = include_str!("../../../../examples/zf-6hp26.toml");
     let rules = |rules: &str| {
         let design = format!(
             "[design]\ntolerance = 0.01\ngap = 0.25\nrules = {rules}\nminimize = [\"error\"]\ntarget = [{}]",
-            targets.join(", ")
+            targets
         );
         let teeth = [
             ("front.sun.teeth", "20..60"),
@@ -319,22 +320,15 @@ fn lepelletier() {
     assert_eq!(["small_sun", "large_sun", "long_planet", "ring"].map(|g| *z.get(g).unwrap()), [35, 43, 26, 95]);
 }
 
-pub fn eight_speeds(id: &str, suns: &str, planet: &str, ring: &str, planets: &str) -> (Value, Design) {
+fn eight_speeds(id: &str, suns: &str, planet: &str, ring: &str, planets: &str) -> (Value, Design) {
     let p = problem(id);
     let a = &p["parameters"];
-    let names = ["1", "2", "3", "4", "5", "6", "7", "8", "R"];
-    let targets: Vec<String> = a["targets"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .zip(names)
-        .map(|(t, n)| format!("{{ state = \"{n}\", ratio = {} }}", t.as_str().unwrap()))
-        .collect();
+    let targets = targets(a, &["1", "2", "3", "4", "5", "6", "7", "8", "R"]);
     let layout = include_str!("../../../../examples/zf-8hp70.toml");
     let tolerance = a["tolerance"].as_str().unwrap();
     let design = format!(
         "[design]\ntolerance = \"{tolerance}\"\nplanets = \"{planets}\"\ngap = 0.5\nminimize = [\"error\"]\ntarget = [{}]",
-        targets.join(", ")
+        targets
     );
     let mut teeth = vec![];
     for set in ["P1", "P2", "P3", "P4"] {

@@ -3,4 +3,3 @@
 mod counts;
 mod files;
 mod layouts;
-mod speed;

@@ -29,7 +29,7 @@ pub(super) struct Branch<'a> {
     pub drags: Vec<Drag>,
     pub computed: Option<(Step, Convergence)>,
     /// Its numbers, where they were found in floating point: exact ones only decide.
-    pub told: Option<Agreed>,
+    pub agreed: Option<Agreed>,
 }
 
 /// Every equilibrium of an operating point.
@@ -95,7 +95,7 @@ impl<'a> Setting<'a> {
             solution,
             drags: vec![],
             computed: None,
-            told: None,
+            agreed: None,
         };
         Ok(Balance {
             branches: answer.solutions.into_iter().map(branch).collect(),
@@ -198,7 +198,7 @@ impl<'a> Setting<'a> {
         let mut continuum = false;
         let mut driven = None;
         for k in 0..second.answer.solutions.len() {
-            let Some((step, solved, at, convergence, told)) = self.agreement(physics, problem, &start, &second, k)?
+            let Some((step, solved, at, convergence, agreed)) = self.agreement(physics, problem, &start, &second, k)?
             else {
                 continue;
             };
@@ -224,7 +224,7 @@ impl<'a> Setting<'a> {
             driven = Some(driven.unwrap_or(false) || drives);
             let drags = step.drags.clone();
             let computed = Some((step, convergence));
-            branches.push(Branch { c, problem, equilibrium, solution, drags, computed, told });
+            branches.push(Branch { c, problem, equilibrium, solution, drags, computed, agreed });
         }
         if branches.is_empty() {
             return Ok(nothing(certificate));

@@ -185,7 +185,7 @@ pub(super) fn settle_at<'t>(
             drags: &branch.drags,
             exactly,
             physics: physics.as_ref().zip(branch.computed.as_ref()),
-            told: branch.told.as_ref(),
+            agreed: branch.agreed.as_ref(),
         })
         .collect();
     let (mut all, extrapolations): (Vec<SolutionReport>, Vec<_>) =

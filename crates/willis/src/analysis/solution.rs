@@ -27,14 +27,14 @@ pub(super) struct Frame<'a> {
     /// Where losses are computed: the laws, and the step in force.
     pub physics: Option<(&'a Physics<'a>, &'a (Step, Convergence))>,
     /// Its numbers, where they were found in floating point.
-    pub told: Option<&'a Agreed>,
+    pub agreed: Option<&'a Agreed>,
 }
 
 impl Frame<'_> {
     pub fn flow(&self, s: &Solution) -> Flow {
         let acting = self.problem.acting(self.c, self.motion, self.equilibrium, s);
-        if let Some(told) = self.told {
-            return told.whole(self.c, &acting);
+        if let Some(agreed) = self.agreed {
+            return agreed.whole(self.c, &acting);
         }
         Flow::new(self.c, self.motion, s, self.problem.scale(), &acting, self.drags, &self.problem.driven)
     }
@@ -47,10 +47,10 @@ impl Frame<'_> {
         let members =
             (1..train.members.len()).map(|m| (train.members[m].name.clone(), self.member(MemberId(m), &flow, &held)));
         let members = Named(members.collect());
-        let told = self.physics.map(|(p, (step, _))| p.told(step, &flow));
-        let extrapolations = told.as_ref().map(|t| t.extrapolations.clone()).unwrap_or_default();
+        let reports = self.physics.map(|(p, (step, _))| p.reports(step, &flow));
+        let extrapolations = reports.as_ref().map(|t| t.extrapolations.clone()).unwrap_or_default();
         let (contacts, bearings, shaft_loads) =
-            told.map_or_else(Default::default, |t| (t.contacts, t.bearings, t.shafts));
+            reports.map_or_else(Default::default, |t| (t.contacts, t.bearings, t.shafts));
         let meshes = flow.meshes.iter().map(|f| {
             let mesh = &train.meshes[f.mesh.0];
             let report = MeshReport {

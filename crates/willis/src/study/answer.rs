@@ -127,7 +127,7 @@ impl PointAnswer {
     }
 
     fn told(train: &Train, operation: &Operation, told: Result<Told, Diagnostics>) -> Self {
-        let (verdict, reason, solution, numbers, ratio, deviation, notes, outside) = match told {
+        let (answer, deviation, notes, outside) = match told {
             Ok(Told::Whole(report, notes)) => {
                 let speed = |m| report.speeds_rad_s.get(train.member_name(m)).copied().flatten();
                 let ratio = ratio(train, operation, speed);
@@ -135,13 +135,15 @@ impl PointAnswer {
                 let is_one = matches!(verdict, Verdict::Unique | Verdict::Unloaded);
                 let solution = solutions.into_iter().next().filter(|_| is_one);
                 let numbers = solution.as_ref().map(|s| PointNumbers::of(train, s));
-                let deviation = speed_deviation.map(|d| d.relative);
-                (verdict, reason, solution, numbers, ratio, deviation, notes, outside_laws)
+                let reason = reason.unwrap_or_default();
+                let answer = Self { reason, solution, numbers, ratio, ..Self::blank(verdict.into()) };
+                (answer, speed_deviation.map(|d| d.relative), notes, outside_laws)
             }
             Ok(Told::Numbers { numbers, why, notes, outside }) => {
                 let ratio = ratio(train, operation, |m| numbers.member(m)?.speed_rad_s);
-                let reason = why.map(|why| why.to_string());
-                (Verdict::Unique, reason, None, Some(numbers), ratio, None, notes, outside)
+                let reason = why.map_or_else(String::new, |why| why.to_string());
+                let numbers = Some(numbers);
+                (Self { reason, numbers, ratio, ..Self::blank(PointVerdict::Unique) }, None, notes, outside)
             }
             Err(wrong) => return Self::refused(wrong),
         };
@@ -171,23 +173,19 @@ impl PointAnswer {
             None => operation.speeds.iter().filter_map(in_rpm).collect(),
             Some(_) => vec![],
         };
-        let reason = reason.unwrap_or_default();
-        Self { verdict: verdict.into(), reason, solution, numbers, warnings, ratio, prescribed_rpm }
+        Self { warnings, prescribed_rpm, ..answer }
+    }
+
+    fn blank(verdict: PointVerdict) -> Self {
+        let (reason, solution, numbers, warnings, ratio, prescribed_rpm) = Default::default();
+        Self { verdict, reason, solution, numbers, warnings, ratio, prescribed_rpm }
     }
 
     /// Of a point that makes no question.
     pub fn refused(wrong: Diagnostics) -> Self {
         let errors: Vec<String> =
             wrong.into_iter().filter(|d| d.severity == Severity::Error).map(|d| d.message).collect();
-        Self {
-            verdict: PointVerdict::Refused,
-            reason: errors.join("; "),
-            solution: None,
-            numbers: None,
-            warnings: vec![],
-            ratio: None,
-            prescribed_rpm: vec![],
-        }
+        Self { reason: errors.join("; "), ..Self::blank(PointVerdict::Refused) }
     }
 
     /// The same with the ratio of a train in which nothing but the gears says it.

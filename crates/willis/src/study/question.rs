@@ -110,16 +110,25 @@ impl Trains {
             return speed.sign() < 0;
         }
         // Speeds that contradict each other may yield.
-        let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
-        let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
-        let c = Configuration::new(train, engaged, &operation.fixed, &prescribed);
-        let motion = c.motion(&operation.speeds).ok();
-        motion.and_then(|motion| motion.speeds[member.0].as_ref().map(|w| w.sign() < 0)).unwrap_or(false)
+        speeds(train, operation)(member).is_some_and(|w| w.value.sign() < 0)
     }
 }
 
 /// What differs from the file.
 type Settings = Vec<(Target, String)>;
+
+/// Speeds of members in an operation, where they are determined.
+pub(super) fn speeds(train: &Train, operation: &Operation) -> impl Fn(MemberId) -> Option<Quantity> + use<> {
+    let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+    let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+    let c = Configuration::new(train, engaged, &operation.fixed, &prescribed);
+    let motion = c.motion(&operation.speeds).ok();
+    move |m| {
+        let motion = motion.as_ref()?;
+        let value = motion.speeds[m.0].clone()?;
+        Some(Quantity { value, pi_power: motion.pi_power, dimension: Dimension::ANGULAR_SPEED })
+    }
+}
 
 fn refuse(code: Code, message: String, hint: &str) -> Diagnostics {
     let d = Diagnostic::new(code, "", message);
@@ -220,7 +229,7 @@ impl<'s> Question<'s> {
                 let message = format!("operation `{}` has no one torque at the output to hold: {why}", self.base.name);
                 return Err(refuse(Code::Unfit, message, ""));
             };
-            let backwards = self.speeds(train, &self.base)(output).is_some_and(|w| w.value.sign() < 0);
+            let backwards = speeds(train, &self.base)(output).is_some_and(|w| w.value.sign() < 0);
             // By its role, so that it drives in every state.
             let torque = if backwards { torque } else { -torque };
             self.output = Some(Quantity { value: torque, pi_power: 0, dimension: Dimension::TORQUE });
@@ -235,7 +244,7 @@ impl<'s> Question<'s> {
             }
             return Ok(());
         }
-        let speeds = self.speeds(train, &self.base);
+        let speeds = speeds(train, &self.base);
         for (member, load) in &mut self.base.loads {
             let speed = || {
                 speeds(*member).filter(|w| !w.value.is_zero()).ok_or_else(|| {
@@ -262,23 +271,6 @@ impl<'s> Question<'s> {
             };
         }
         Ok(())
-    }
-
-    /// Speeds of members in an operation, where they are determined.
-    pub(super) fn speeds<'a>(
-        &self,
-        train: &'a Train,
-        operation: &Operation,
-    ) -> impl Fn(MemberId) -> Option<Quantity> + use<'a> {
-        let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
-        let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
-        let c = Configuration::new(train, engaged, &operation.fixed, &prescribed);
-        let motion = c.motion(&operation.speeds).ok();
-        move |m| {
-            let motion = motion.as_ref()?;
-            let value = motion.speeds[m.0].clone()?;
-            Some(Quantity { value, pi_power: motion.pi_power, dimension: Dimension::ANGULAR_SPEED })
-        }
     }
 
     pub(super) fn role(&self, train: &Train, operation: &Operation, who: Who) -> Result<MemberId, Diagnostics> {
@@ -419,7 +411,7 @@ impl Question<'_> {
     fn at_ratio(&self, train: &Train, operation: &mut Operation, ratio: &Rational) -> Result<(), Diagnostics> {
         let [input, output] = [self.role(train, operation, Who::Input)?, self.role(train, operation, Who::Output)?];
         let name = |m: MemberId| train.member_name(m);
-        let Some(speed) = self.speeds(train, operation)(input).filter(|w| !w.value.is_zero()) else {
+        let Some(speed) = speeds(train, operation)(input).filter(|w| !w.value.is_zero()) else {
             let message =
                 format!("`{}` has no speed, so a ratio says nothing of that of `{}`", name(input), name(output));
             return Err(refuse(Code::Unfit, message, "prescribe the speed of the input in the operation"));

@@ -19,7 +19,7 @@ use super::answer::{LawChoice, PointAnswer, PointVerdict};
 use super::column::{Column, ColumnTable};
 use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain, rounded};
-use super::question::{Hold, Question, Trains};
+use super::question::{Hold, Question, Trains, speeds};
 use super::summary::{self, Seen, WarningKind};
 use super::{Axis, Statistics};
 
@@ -716,7 +716,7 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
         }
         Target::Ratio => {
             let [input, output] = [Who::Input, Who::Output].map(|who| question.role(train, base, who).ok());
-            let speeds = question.speeds(train, base);
+            let speeds = speeds(train, base);
             let ratio = speeds(input?)?.si() / speeds(output?)?.si();
             ratio.is_finite().then(|| plain(ratio, 12))
         }
@@ -735,7 +735,7 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
         Target::Torque(who) | Target::Power(who) => {
             let member = question.role(train, base, *who).ok()?;
             let (_, load) = base.loads.iter().find(|l| l.0 == member)?;
-            let backwards = || question.speeds(train, base)(member).is_some_and(|w| w.value.sign() < 0);
+            let backwards = || speeds(train, base)(member).is_some_and(|w| w.value.sign() < 0);
             match (target, load) {
                 (Target::Torque(_), Load::Torque(q)) => {
                     let turn = match who {

@@ -3,7 +3,8 @@
 //! The bound of each component is its own: |B⁻¹| times what the solution leaves over in the equations, which are kept
 //! as they were given. So neither the largest torque nor how the inverse came about is in it.
 
-use crate::exact::{PRIME, Rational, power, times};
+use crate::exact::Rational;
+use crate::exact::residue::{PRIME, power, times};
 
 use super::equations::{Equations, exact_solution};
 use super::motion::{Amount, Motion};

@@ -12,7 +12,7 @@
 
 use std::ops::Neg;
 
-use crate::exact::{PRIME, power, times};
+use crate::exact::residue::{PRIME, power, times};
 
 use super::basis::add;
 use super::equations::{Entry, Equations};

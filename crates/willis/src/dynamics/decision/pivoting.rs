@@ -9,7 +9,8 @@
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use crate::exact::{PRIME, Rational, times};
+use crate::exact::Rational;
+use crate::exact::residue::{PRIME, times};
 
 use super::Decision;
 use super::basis::{Basis, Vector, Work, add};
