@@ -908,9 +908,7 @@ pub fn assumptions(train: &Train) -> Vec<String> {
     if !train.variators.is_empty() {
         all.push("the table of ratios is that of the gears alone, without variators".into());
     }
-    let shared = |m: &&crate::train::Mesh| m.count > 1;
-    let factor =
-        train.meshes.iter().filter(shared).filter_map(|m| m.teeth.as_ref()).map(|t| t.sharing).fold(1.0, f64::max);
+    let factor = train.meshes.iter().map(crate::train::Mesh::sharing).fold(1.0, f64::max);
     if factor > 1.0 {
         all.push(format!(
             "of parallel planets one bears up to {factor} times the mean load: pressures, films and loads of planet bearings \

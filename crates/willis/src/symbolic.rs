@@ -10,6 +10,7 @@
 use std::collections::BTreeMap;
 
 use crate::exact::Rational;
+use crate::exact::residue::{PRIME, inverse, plus, times};
 
 /// A symbol's number; what it is called is the printer's affair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -404,9 +405,6 @@ fn split(p: Polynomial, factors: &mut Vec<Polynomial>) {
 /// Products of terms in a step towards a common divisor beyond which it is not looked for.
 const MOST_PRODUCTS: usize = 20_000;
 
-/// A prime below 2^61; arithmetic modulo it decides most questions at once.
-const MODULUS: u64 = (1 << 61) - 1;
-
 /// An arbitrary but fixed value for a symbol.
 fn probe(s: Symbol) -> u64 {
     (s.0 as u64 * 7919 + 104_729) % 9973 + 2
@@ -423,10 +421,9 @@ fn multilinear_factors(p: &Polynomial) -> Option<Vec<Polynomial>> {
         return None;
     }
     let n = symbols.len();
-    let plus = |a: u64, b: u64| (a + b) % MODULUS;
     // Values of p, its first and its mixed second derivatives.
     let (mut value, mut first, mut second) = (0u64, vec![0u64; n], vec![0u64; n * n]);
-    let inverse: Vec<u64> = symbols.iter().map(|s| inverse_of(probe(*s))).collect();
+    let inverse: Vec<u64> = symbols.iter().map(|s| inverse(probe(*s))).collect();
     for (m, c) in &p.0 {
         let mut term = residue(c);
         let present: Vec<usize> = (0..n).filter(|&k| m.of(symbols[k]) == 1).collect();
@@ -478,14 +475,10 @@ fn multilinear_factors(p: &Polynomial) -> Option<Vec<Polynomial>> {
     (product == *p).then_some(factors)
 }
 
-fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(MODULUS)) as u64
-}
-
 /// A number modulo the prime.
 fn residue(c: &Rational) -> u64 {
-    let [n, d] = c.residues(MODULUS);
-    if d == 1 { n } else { times(n, inverse_of(d)) }
+    let [n, d] = c.residues(PRIME);
+    if d == 1 { n } else { times(n, inverse(d)) }
 }
 
 /// The coefficients of the powers of `s`, all other symbols at the probe point.
@@ -497,7 +490,7 @@ fn image(p: &Polynomial, s: Symbol) -> Vec<u64> {
             (0..*e).for_each(|_| term = times(term, probe(Symbol(k))));
         }
         let slot = &mut all[m.of(s) as usize];
-        *slot = (*slot + term) % MODULUS;
+        *slot = (*slot + term) % PRIME;
     }
     while all.last() == Some(&0) {
         all.pop();
@@ -513,12 +506,12 @@ fn seem_coprime(a: &Polynomial, b: &Polynomial) -> bool {
         let (mut a, mut b) = (image(a, s), image(b, s));
         while !b.is_empty() {
             // a modulo b
-            let lead = inverse_of(*b.last().expect("not empty"));
+            let lead = inverse(*b.last().expect("not empty"));
             while a.len() >= b.len() {
                 let factor = times(*a.last().expect("longer than b"), lead);
                 let shift = a.len() - b.len();
                 for (k, c) in b.iter().enumerate() {
-                    a[shift + k] = (a[shift + k] + MODULUS - times(factor, *c)) % MODULUS;
+                    a[shift + k] = (a[shift + k] + PRIME - times(factor, *c)) % PRIME;
                 }
                 while a.last() == Some(&0) {
                     a.pop();
@@ -528,19 +521,6 @@ fn seem_coprime(a: &Polynomial, b: &Polynomial) -> bool {
         }
         a.len() <= 1
     })
-}
-
-/// The inverse modulo the prime, by Fermat.
-fn inverse_of(x: u64) -> u64 {
-    let (mut base, mut power, mut result) = (x, MODULUS - 2, 1u64);
-    while power > 0 {
-        if power & 1 == 1 {
-            result = times(result, base);
-        }
-        base = times(base, base);
-        power >>= 1;
-    }
-    result
 }
 
 /// The greatest number of which both are whole multiples.

@@ -175,6 +175,13 @@ pub struct Mesh {
     pub teeth: Option<Box<Teeth>>,
 }
 
+impl Mesh {
+    /// Load of the parallel mesh that is loaded most over the mean of all, K_γ; 1 where there is one alone.
+    pub(crate) fn sharing(&self) -> f64 {
+        self.teeth.as_ref().filter(|_| self.count > 1).map_or(1.0, |teeth| teeth.sharing)
+    }
+}
+
 /// A set as its writer named it; its gears are among the train's meshes.
 #[derive(Clone, Debug)]
 pub struct Set {

@@ -53,11 +53,12 @@ impl Pattern {
     /// Whether it can be that of a point with these directions of motion and loads.
     pub fn suits(&self, sigma: &[Option<i8>], problem: &Loads) -> bool {
         let has_equation = |n: &usize| self.rows.contains(n) || self.open.contains(n);
-        // Friction in a mesh at rest is open.
-        self.sigma == sigma
-            && self.columns.iter().all(|c| c.p_drives.is_some())
-            && self.open == problem.open
-            && problem.loaded.iter().all(has_equation)
+        self.sigma == sigma && self.open == problem.open && problem.loaded.iter().all(has_equation)
+    }
+
+    /// Whether every mesh that carries something moves: at rest its friction is open.
+    pub fn moves(&self) -> bool {
+        self.columns.iter().all(|c| c.p_drives.is_some())
     }
 
     /// Whether both say the same of a point.

@@ -166,7 +166,8 @@ impl<'t> PointSeries<'t> {
             return Ok(told);
         }
         let (told, pattern) = self.settled(operation)?;
-        if let (Some(pattern), Some(situation)) = (pattern, self.situation(operation))
+        if let Some(pattern) = pattern.filter(Pattern::moves)
+            && let Some(situation) = self.situation(operation)
             && situation.patterns.len() < MOST_PATTERNS
             && !situation.patterns.iter().any(|known| known.is_like(&pattern))
         {
@@ -212,10 +213,8 @@ impl<'t> PointSeries<'t> {
     /// The numbers of a point, where floating point leaves no doubt of them.
     fn quick(&mut self, operation: &Operation) -> Option<Told> {
         let train = self.train;
-        let Situation { c, transfer, physics, patterns, .. } = self.situation(operation)?;
-        if patterns.is_empty() {
-            return None;
-        }
+        let known = self.situations.iter_mut().find(|s| s.asked.is_of(operation));
+        let Situation { c, transfer, physics, patterns, .. } = known?;
         let motion = c.motion_by(transfer, &operation.speeds).ok().filter(|motion| motion.deviation.is_none())?;
         if !(0..motion.speeds.len()).all(|m| motion.si(MemberId(m)).is_some_and(f64::is_finite)) {
             return None;

@@ -182,10 +182,9 @@ impl Heat {
     pub(super) fn at_near(&self, oil: f64, made: &[f64], near: Option<&[f64]>) -> Result<Linearised, Unsolved> {
         let known: Vec<Option<f64>> =
             self.nodes.iter().enumerate().map(|(k, n)| if k == OIL { Some(oil) } else { n.fixed }).collect();
-        let temperatures = match near {
-            Some(near) => self.temperatures_near(&known, made, near)?,
-            None => self.temperatures(&known, made)?,
-        };
+        // What is not found from there may be found from the middle of what is given.
+        let found = near.and_then(|near| self.temperatures_near(&known, made, near).ok());
+        let temperatures = found.map_or_else(|| self.temperatures(&known, made), Ok)?;
         let (matrix, imbalance) = self.slopes(&temperatures, made);
         let free: Vec<usize> = (0..self.nodes.len()).filter(|k| known[*k].is_none()).collect();
         let inner: Vec<Vec<f64>> = free.iter().map(|&a| free.iter().map(|&b| matrix[a][b]).collect()).collect();

@@ -31,7 +31,6 @@ family! {
     Windage ("windage"): Disc => "P" ["W"];
     diab::Diab,
     dawson_1984::Dawson1984,
-    maurer::Maurer,
     anderson_loewenthal::AndersonLoewenthal,
 }
 

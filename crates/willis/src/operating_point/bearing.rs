@@ -163,36 +163,37 @@ impl<R: Real> Physics<'_, R> {
         let mut torque = fixed(none);
         let mut radial = 0.0f64;
         let mut worst = fixed(none);
+        // What the teeth make of the load, of the planet that is loaded most; of a load that is not all theirs to first order.
         let beyond_mean = self.load_sharing(mount, &carried.loading) - 1.0;
-        // Bearings side by side mostly carry the same.
+        let hardest = |load: Dual<R>| load + fixed(load.eps * beyond_mean);
+        // Bearings side by side mostly carry the same. Derivatives are no part of what `==` compares.
         let mut last = None::<(Dual<R>, Dual<R>)>;
+        let same = |a: &Dual<R>, b: &Dual<R>| R::NDERIV == 0 && a.re == b.re && a.eps == b.eps;
         for own in radials {
             let own = *own + fixed(numbers.radial_load / count);
-            // What the teeth make of the load, of the planet that is loaded most.
-            let hardest = own + fixed(own.eps * beyond_mean);
-            if hardest.re.re() >= radial {
-                (radial, worst) = (hardest.re.re(), hardest);
+            if hardest(own).re.re() >= radial {
+                (radial, worst) = (hardest(own).re.re(), hardest(own));
             }
             if speed.re() > 0.0 {
-                let known = last.filter(|(load, _)| *load == own);
+                let known = last.filter(|(load, _)| same(load, &own));
                 let (_, each) = *last.insert(known.unwrap_or_else(|| (own, self.duty(k, speed, own, axial).torque())));
                 torque += each * (1.0 / radials.len() as f64);
             }
         }
         if speed.re() > 0.0 {
-            told(&self.duty(k, speed, worst, axial));
+            told(&self.duty(k, speed, worst, hardest(axial)));
         }
         let number = mount.count * mount.places;
         let finite = |x: R| if x.re().is_finite() { x } else { none };
         let all = real::max(finite(torque.re), none) * f64::from(number);
         let proportional = real::clamp(finite(torque.eps) * f64::from(number), none, all);
-        Friction { speed, torque: all, proportional, loads: [radial, axial.re.re()] }
+        Friction { speed, torque: all, proportional, loads: [radial, hardest(axial).re.re()] }
     }
 
     /// Load of the planet that is loaded most over the mean, at the bearings of planets; else 1.
     fn load_sharing(&self, mount: &BearingMount, loading: &[(usize, R)]) -> f64 {
         let planet = self.train.planets.iter().any(|p| mount.members.contains(&p.member));
-        let factors = loading.iter().filter_map(|(j, _)| self.train.meshes[*j].teeth.as_ref().map(|t| t.sharing));
+        let factors = loading.iter().map(|(j, _)| self.train.meshes[*j].sharing());
         factors.filter(|_| planet).fold(1.0, f64::max)
     }
 

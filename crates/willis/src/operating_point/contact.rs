@@ -504,7 +504,7 @@ impl Physics<'_> {
             return None;
         }
         let loss_factor = self.fixed(teeth, flow).loss_factor;
-        let hardest = self.loaded_by(teeth.sharing, mesh, teeth, flow);
+        let hardest = self.loaded_by(mesh.sharing(), mesh, teeth, flow);
         let local = self.friction.meta().tags.contains(&Tag::Local);
         let mean = self.tooth(mesh, teeth, flow).friction;
         let composite = composite(teeth);
@@ -564,7 +564,7 @@ impl Physics<'_> {
         let loaded = self.loaded(mesh, teeth, flow);
         let driver = flow.driver.unwrap_or(0);
         let pitch = loaded.at(&fixed.pitch);
-        let hardest = self.loaded_by(teeth.sharing, mesh, teeth, flow);
+        let hardest = self.loaded_by(mesh.sharing(), mesh, teeth, flow);
         let hard = hardest.at(&fixed.pitch);
         let [start, end] = pair.path();
 

@@ -399,6 +399,12 @@ fn one_planet_bears_more_than_the_mean() {
     // But for what does not come from the load: the drag of the planet in its fluid and bearings.
     close(load(&uneven, "planet bearings"), 1.2 * load(&even, "planet bearings"), 1e-5);
     assert_eq!(load(&uneven, "sun bearing"), load(&even, "sun bearing"));
+    // One planet shares with nobody.
+    let alone = |factor: &str| {
+        let text = stage(1, 50.0, "", RATED).replace(", mass = \"0.7 kg\"", "");
+        only(&text.replace("width = \"50 mm\"", &format!("width = \"50 mm\"{factor}")))
+    };
+    assert_eq!(alone(""), alone(", load_sharing_factor = 1.2"));
     let said = analysis(&text(", load_sharing_factor = 1.2")).assumptions;
     assert!(said.iter().any(|a| a.starts_with("of parallel planets one bears up to 1.2 times the mean")), "{said:?}");
     for wrong in ["0.9", "nan", "-1.0", "11.0"] {

@@ -435,3 +435,30 @@ fn regress_wrong_selections_are_told() {
     let wrong = sensitivity(&none, &Selection::default()).unwrap_err().to_string();
     assert!(wrong.contains("there is none"), "{wrong}");
 }
+
+/// Bearings side by side that carry the same have derivatives of their own: moved along the axis one gains what the other loses.
+#[test]
+fn bearings_that_carry_the_same_have_derivatives_of_their_own() {
+    let at = |mm: f64| {
+        let text = example("fva-planetary-stage");
+        let text = text.replace("width = \"50 mm\"", "width = \"50 mm\", position = \"0 mm\"");
+        text.replace(
+            "count = 2\n\n[[bearing]]\nname = \"sun",
+            &format!("count = 2\nposition = \"{mm} mm\"\nspan = \"40 mm\"\n\n[[bearing]]\nname = \"sun"),
+        )
+    };
+    let rated = Selection { operation: Some("rated".into()), ..Selection::default() };
+    let loss = |mm: f64| {
+        let train = Train::from_toml(&at(mm)).unwrap_or_else(|e| panic!("{e}"));
+        analyze(&train, &rated).unwrap().operations[0].solutions[0].loss_w
+    };
+    for mm in [0.0, 3.0] {
+        let train = Train::from_toml(&at(mm)).unwrap();
+        let all = sensitivity(&train, &rated).unwrap();
+        // What moves no loss is not told.
+        let own = all.operations[0].quantities.iter().find(|q| q.name == "planet bearings.position");
+        let derivative = own.map_or(0.0, |q| q.loss_derivative_w);
+        let difference = (loss(mm + 0.1) - loss(mm - 0.1)) / 0.2e-3;
+        assert!((derivative - difference).abs() < 0.02 * difference.abs() + 0.1, "{mm}: {derivative} {difference}");
+    }
+}

@@ -578,3 +578,21 @@ fn points_of_a_series_are_those_asked_alone() {
     // Both ways were gone often enough to mean something.
     assert!(quick > 2000 && odd > 300, "{quick} {odd}");
 }
+
+/// A column has its values whatever other columns are asked for: with none beyond the numbers of a point, or with all.
+#[test]
+fn a_column_is_the_same_beside_any_others() {
+    for file in ["fva-planetary-stage", "two-speed-wet-brake", "industrial-planetary-heat", "prius-hybrid"] {
+        let model = subject(&example(file));
+        let over = match model.train().operations()[0].loads.is_empty() {
+            true => vec!["input.speed=-900,700,1500 rpm"],
+            false => vec!["input.speed=-900,700,1500 rpm", "input.torque=-40,0,3,150 N m"],
+        };
+        let [few, many] = [&["members"][..], &["all"]].map(|columns| sweep(&model, &over, columns, Hold::AsGiven));
+        let [a, b] = [all(&few), all(&many)];
+        for column in few.columns() {
+            let [x, y] = [self::column(&few, &a, &column.name), self::column(&many, &b, &column.name)];
+            assert_eq!(format!("{x:?}"), format!("{y:?}"), "{file} {}", column.name);
+        }
+    }
+}

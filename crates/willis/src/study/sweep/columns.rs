@@ -47,25 +47,16 @@ pub(in crate::study) enum What {
 impl What {
     /// Whether the [numbers](PointNumbers) of a point have it.
     pub(super) fn is_among_numbers(&self) -> bool {
-        matches!(
-            self,
-            Self::Axis(_)
-                | Self::Verdict
-                | Self::Best
-                | Self::Reason
-                | Self::Warnings
-                | Self::Ratio
-                | Self::Efficiency
-                | Self::InputPower
-                | Self::OutputPower
-                | Self::Loss
-                | Self::LossOf(_)
-                | Self::Residual
-                | Self::Speed(_)
-                | Self::Torque(_)
-                | Self::Power(_)
-                | Self::SpeedRpm(_)
-        )
+        match self {
+            Self::Axis(_) | Self::Verdict | Self::Best | Self::Reason | Self::Warnings | Self::Ratio => true,
+            Self::Efficiency | Self::InputPower | Self::OutputPower | Self::Loss | Self::LossOf(_) | Self::Residual => {
+                true
+            }
+            Self::Speed(_) | Self::Torque(_) | Self::Power(_) | Self::SpeedRpm(_) => true,
+            Self::Circulating | Self::LockFactor | Self::MeshLoss(_) | Self::MeshEfficiency(_) => false,
+            Self::MeshFriction(_) | Self::ElementTorque(_) | Self::SourceLoss(_) => false,
+            Self::Variator(..) | Self::Machine(..) => false,
+        }
     }
 }
 
