@@ -10,8 +10,10 @@
 //!   of its closed elements, its ratio a quotient of two determinants. Elements at one point do the same to all speeds.
 //! * The search chooses points, leaves a branch as soon as too many of its states can be no gear, and multiplies out the
 //!   elements at the points only for what is found.
-//! * What is equal is decided exactly: an integer that is not zero modulo a prime of 61 bits is not zero, and everything
-//!   that is shown is computed again with rational numbers from the equations of the sets.
+//! * What is equal is decided modulo a prime of 61 bits: an integer that is not zero there is not zero. One that is zero
+//!   there is taken for zero, which is wrong only for multiples of that prime. Ratios are sorted out in floating point,
+//!   with a margin for rounding within which exact numbers decide. What is shown is computed again with rational numbers
+//!   from the equations of the sets, and the answer says so where that does not confirm a scheme.
 //!
 //! Literature: Willis, *Principles of Mechanism* (1841), for the equation of a set; the lever analogy of Benford and
 //! Leising, SAE 810102 (1981), for shafts as points; Demoucron, Malgrange and Pertuiset (1964) for drawings without a

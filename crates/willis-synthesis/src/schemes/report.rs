@@ -166,13 +166,16 @@ impl Schemes {
         if wish.planar {
             waterfall.push(stage("planar", "can be drawn without a crossing".into(), tally.schemes));
         }
-        let schemes = harvest.rows().iter().filter_map(|row| {
+        let rows = harvest.rows().iter().filter_map(|row| {
             let mut scheme = Scheme::new(wish, row.layout, &row.elements)?;
             scheme.known = Known::of(&row.layout, &row.elements).map(str::to_owned);
             Some(scheme)
         });
+        let schemes: Vec<Scheme> = rows.collect();
+        // Rational numbers do not confirm these: the counts are not to be trusted then.
+        let unconfirmed = harvest.rows().len() - schemes.len();
         let (parts, done) = (search.parts(), harvest.done());
-        let complete = done == parts && wish.sample == 1;
+        let complete = done == parts && wish.sample == 1 && unconfirmed == 0;
         let share = if parts == 0 { 1.0 } else { done as f64 / parts as f64 };
         let space = SchemeSpace {
             sets: wish.sets.len(),
@@ -181,7 +184,14 @@ impl Schemes {
             examined: tally.layouts,
             choices: tally.choices,
         };
-        let statement = statement(wish, &space, tally.schemes, complete, share);
+        let mut statement = statement(wish, &space, tally.schemes, complete, share);
+        if unconfirmed > 0 {
+            statement += &format!(
+                " Rational arithmetic does not confirm {unconfirmed} of the {} schemes to be shown: they are left out, and \
+                 the counts are not certain.",
+                harvest.rows().len()
+            );
+        }
         Self {
             format: Format::new(),
             wish: wish.clone(),
@@ -194,7 +204,7 @@ impl Schemes {
                 classes: tally.classes,
                 by_brakes: tally.by_brakes.clone(),
             },
-            schemes: schemes.collect(),
+            schemes,
             relaxations: vec![],
             rediscovered: None,
         }
@@ -281,8 +291,9 @@ fn statement(wish: &Wish, space: &SchemeSpace, schemes: u64, complete: bool, sha
         space.choices,
     );
     if complete {
-        text +=
-            &format!("all examined or excluded by exact bounds; {schemes} satisfy; nothing else exists in this space.");
+        text += &format!(
+            "all examined or excluded by bounds with a margin for rounding; {schemes} satisfy; nothing else exists in this space."
+        );
     } else if wish.sample > 1 {
         text +=
             &format!("a sample of one in {} layouts; {schemes} satisfy; others exist outside the sample", wish.sample);
@@ -294,4 +305,36 @@ fn statement(wish: &Wish, space: &SchemeSpace, schemes: u64, complete: bool, sha
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use willis::work::Serial;
+
+    /// A scheme that rational numbers do not confirm is not left out without a word.
+    #[test]
+    fn an_unconfirmed_scheme_is_spoken_of() {
+        let mut wish = Wish::new(&["62/26", "74/42"], 4, 2, 3).unwrap();
+        [wish.forward_range, wish.step, wish.reverse_range] =
+            ["1/2..5", "1.15..2.2", "1.2..5"].map(|b| b.parse().unwrap());
+        let search = Search::new(&wish).unwrap();
+        let mut harvest = Harvest::default();
+        search.harvest(&Serial, 0..search.parts(), &mut harvest);
+        let sound = search.answer(&harvest);
+        assert!(sound.completeness.complete && sound.completeness.statement.contains("with a margin for rounding"));
+        // Four times the same element: no scheme at all.
+        let mut kept = serde_json::to_value(&harvest).unwrap();
+        let elements = &mut kept["rows"][0]["elements"];
+        let first = elements[0].clone();
+        elements.as_array_mut().unwrap().fill(first);
+        let answer = search.answer(&serde_json::from_value(kept).unwrap());
+        assert_eq!(answer.schemes.len() + 1, sound.schemes.len());
+        assert!(!answer.completeness.complete);
+        assert!(
+            answer.completeness.statement.contains("does not confirm 1 of the"),
+            "{}",
+            answer.completeness.statement
+        );
+    }
 }

@@ -76,7 +76,7 @@ pub struct SetRange {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Completeness {
-    /// Whether the whole space was examined, or excluded by exact bounds.
+    /// Whether the whole space was examined, or excluded by bounds with a margin for rounding.
     pub complete: bool,
     /// The share that was: steps of the outermost loop done, of all.
     pub done: u64,

@@ -6,8 +6,9 @@ use super::wish::Ratio;
 /// More boxes than this are not looked at.
 const MOST_BOXES: usize = 40_000;
 
-/// Whether it is proved that no basic ratios in a box give every quotient a value in its windows: the box is halved until
-/// each part is excluded by some quotient, whose extremes over a box are at its corners.
+/// Whether no basic ratios in a box give every quotient a value in its windows: the box is halved until each part is
+/// excluded by some quotient, whose extremes over a box are at its corners. They are found in floating point, with a
+/// margin for rounding.
 pub(crate) fn excluded(targets: &[(&Quotient, &Ratio)], bounds: &[[f64; 2]]) -> bool {
     let mut stack = vec![bounds.to_vec()];
     let mut looked = 0;

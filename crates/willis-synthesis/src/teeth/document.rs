@@ -116,6 +116,9 @@ const KEYS: [&str; 11] = [
     "target",
 ];
 
+/// The largest difference, in teeth, from a set without profile shift.
+const MOST_MISMATCH: i64 = 4;
+
 /// Reads with places.
 struct Reader<'t> {
     text: &'t str,
@@ -168,13 +171,12 @@ impl Reader<'_> {
 
     fn counts(&mut self, place: &str, item: &Item) -> Option<Counts> {
         let read = match item.as_value() {
-            Some(Value::Integer(i)) => Ok(Counts::range(*i.value(), *i.value())),
+            Some(Value::Integer(i)) => Counts::checked(vec![*i.value()]),
             Some(Value::String(s)) => s.value().parse(),
             Some(Value::Array(a)) => {
                 let list: Option<Vec<i64>> = a.iter().map(Value::as_integer).collect();
                 match list {
-                    Some(list) if !list.is_empty() => Ok(Counts::list(list)),
-                    Some(_) => "".parse(),
+                    Some(list) => Counts::checked(list),
                     None => {
                         self.kind(place, item, "a list of whole numbers");
                         return None;
@@ -193,6 +195,37 @@ impl Reader<'_> {
                 None
             }
         }
+    }
+
+    /// Teeth of a gear: some number of at least one.
+    fn teeth(&mut self, place: &str, item: &Item) -> Option<Counts> {
+        let counts = self.counts(place, item)?;
+        if counts.within(1, super::range::MOST_TEETH).next().is_some() {
+            return Some(counts);
+        }
+        let message = format!("`{counts}` contains no number of teeth: a gear has at least 1");
+        self.report(Diagnostic::new(Code::OutOfRange, "", message), place, item.span());
+        None
+    }
+
+    /// A gap in modules: a number, or a text of one.
+    fn gap(&mut self, place: &str, item: &Item) -> Option<Length> {
+        let text = item.as_str().map(|t| t.trim_end_matches("modules").trim_end_matches("module").trim());
+        let modules = match text {
+            Some(t) => t.parse::<Rational>().ok().or_else(|| {
+                self.kind(place, item, "a number of modules, such as \"0.5\"");
+                None
+            }),
+            None => self.rational(place, item),
+        }?;
+        let gap = Length::of(&modules).filter(|_| modules.sign() >= 0);
+        if gap.is_none() {
+            let message = format!(
+                "`{place}` is {modules}; it must be at least 0, with a numerator and denominator of at most a million"
+            );
+            self.report(Diagnostic::new(Code::OutOfRange, "", message), place, item.span());
+        }
+        gap
     }
 
     fn names<T: std::str::FromStr<Err = Box<Diagnostic>>>(&mut self, place: &str, item: &Item) -> Vec<T> {
@@ -341,12 +374,14 @@ impl Design {
         let planets = table.get("planets").and_then(|i| r.counts("design.planets", i));
         let mismatch = match table.get("mismatch").map(|i| (i, r.counts("design.mismatch", i))) {
             Some((item, Some(counts))) => {
-                let list: Vec<i64> = counts.within(-100, 100).collect();
-                if list.iter().any(|d| d.abs() > 4) {
-                    let message = "a mismatch beyond ±4 teeth cannot be closed by profile shift";
+                let inside = |end: Option<i64>| end.is_some_and(|d| d.abs() <= MOST_MISMATCH);
+                if !inside(counts.least()) || !inside(counts.most()) {
+                    let message = format!(
+                        "`{counts}` goes beyond ±{MOST_MISMATCH}: a larger mismatch cannot be closed by profile shift"
+                    );
                     r.report(Diagnostic::new(Code::OutOfRange, "", message), "design.mismatch", item.span());
                 }
-                list
+                counts.within(-MOST_MISMATCH, MOST_MISMATCH).collect()
             }
             _ => vec![0],
         };
@@ -357,15 +392,7 @@ impl Design {
         rules.sort_unstable();
         rules.dedup();
         let gap = match table.get("gap") {
-            Some(item) => {
-                match item.as_str().map(|t| t.trim_end_matches("modules").trim_end_matches("module").trim()) {
-                    Some(t) => t.parse::<Rational>().ok().as_ref().and_then(Length::of).or_else(|| {
-                        r.kind("design.gap", item, "a number of modules, such as \"0.5\"");
-                        None
-                    }),
-                    None => r.rational("design.gap", item).as_ref().and_then(Length::of),
-                }
-            }
+            Some(item) => r.gap("design.gap", item),
             None => Some(Length::ZERO),
         };
         let module = table.get("module").and_then(|i| r.length("design.module", i));
@@ -390,6 +417,9 @@ impl Design {
             objectives = vec![Objective::Error, Objective::RingDiameter, Objective::Forward, Objective::Backward];
         }
         let mut raw_targets = vec![];
+        if let Some(item) = table.get("target").filter(|t| !t.is_array() && !t.is_array_of_tables()) {
+            r.kind("design.target", item, "a list of tables, `[[design.target]]` or `[{ ratio = 4.7 }]`,");
+        }
         for k in 0..tables(table.get("target")) {
             let place = format!("design.target[{k}]");
             let Some(item) = table.get("target").and_then(|t| nth(t, k)) else { continue };
@@ -498,7 +528,16 @@ impl Design {
             },
             None => None,
         };
-        let any_sign = table.get("any_sign").and_then(Item::as_bool).unwrap_or(false);
+        let any_sign = match table.get("any_sign") {
+            Some(i) => match i.as_bool() {
+                Some(b) => b,
+                None => {
+                    r.kind(&format!("{place}.any_sign"), i, "true or false");
+                    return None;
+                }
+            },
+            None => false,
+        };
         let own = match table.get("tolerance") {
             Some(i) => r.rational(&format!("{place}.tolerance"), i)?,
             None => tolerance.clone(),
@@ -590,7 +629,7 @@ impl Design {
             for path in paths(kind) {
                 let full = format!("{place}.{}", path.replace(".0.", "[0].").replace(".1.", "[1]."));
                 gears.push(match at(&set, path) {
-                    Some(item) => r.counts(&full, item),
+                    Some(item) => r.teeth(&full, item),
                     None if path.contains("planet") => Some(Counts::range(6, super::range::MOST_TEETH)),
                     None => {
                         let d = Diagnostic::new(Code::MissingKey, "", format!("set `{name}` needs `{path}`"));

@@ -4,6 +4,7 @@
 //! no rational multiple of a root: there a gap below 10⁻⁹ modules counts as none.
 
 use std::cmp::Ordering;
+use std::ops::{Neg, Rem};
 
 use serde::{Deserialize, Serialize};
 use willis::exact::Rational;
@@ -13,12 +14,12 @@ use willis::exact::Rational;
 /// ```
 /// assert_eq!(willis_synthesis::teeth::fit::gcd(84, -36), 12);
 /// ```
-pub fn gcd(a: i64, b: i64) -> i64 {
-    let (mut a, mut b) = (a.abs(), b.abs());
-    while b != 0 {
+pub fn gcd<T: Copy + Default + PartialOrd + Neg<Output = T> + Rem<Output = T>>(mut a: T, mut b: T) -> T {
+    let zero = T::default();
+    while b != zero {
         (a, b) = (b, a % b);
     }
-    a
+    if a < zero { -a } else { a }
 }
 
 /// Whether `length · sin(π/planets) > needed`, exactly: whole numbers of any common unit, such as half modules. For one
@@ -111,11 +112,10 @@ impl Length {
         fits.then(|| Self { parts: reduced(numerator, denominator) })
     }
 
-    /// The nearest length of millionths.
+    /// Exactly so many modules; none where [`Length::new`] gives none for the fraction in lowest terms.
     pub(crate) fn of(modules: &Rational) -> Option<Self> {
-        let text = modules.to_fraction();
-        let (n, d) = text.split_once('/')?;
-        Self::new(n.parse().ok()?, d.parse().ok()?)
+        let (n, d) = super::layout::fraction(modules)?;
+        Self::new(n, d)
     }
 
     /// In modules.

@@ -2,6 +2,8 @@
 
 use willis::exact::residue::{self, minus, plus, times};
 
+use super::fit::gcd;
+
 /// A polynomial of degree at most one in each of its variables: the coefficient at position `mask` belongs to the product
 /// of the variables whose bits are set.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -126,14 +128,6 @@ pub(crate) fn null_vector(rows: &[&Row], columns: &[usize], variables: usize) ->
         .into_iter()
         .map(|f| f.into_iter().map(|x| i64::try_from(x / common).ok()).collect::<Option<Vec<_>>>().map(Form))
         .collect()
-}
-
-fn gcd(a: i128, b: i128) -> i128 {
-    let (mut a, mut b) = (a.abs(), b.abs());
-    while b != 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }
 
 impl Form {

@@ -14,7 +14,6 @@ use willis::exact::Rational;
 
 use super::form::{Form, Quotient};
 use super::layout::fraction;
-use super::range::MOST_TEETH;
 use super::space::SetSpace;
 
 /// A closed window of the ratio as fractions with positive denominators.
@@ -41,16 +40,15 @@ fn crossing(s: i64, p1: i64, r1: i64, a: i64, (n, d): (i64, i64)) -> (i128, i128
 }
 
 /// Calls `found` with the teeth of every Wolfrom drive whose ratio is in one of the windows, for one sun. The order is that
-/// of `p1, r1`, windows, mismatch, `p2`.
+/// of the first mismatch, `p1`, the second mismatch, windows, `p2`.
 pub(crate) fn lines(space: &SetSpace, sun: i64, windows: &[Bounds], found: &mut dyn FnMut([i64; 5])) {
     let [planet_1, ring_1, planet_2, ring_2] = [1, 2, 3, 4].map(|k| &space.gears[k]);
-    let most = |c: &super::range::Counts| c.most().unwrap_or(MOST_TEETH).min(MOST_TEETH);
-    let (most_1, most_2) = (most(ring_1), most(ring_2));
-    let (least_p2, most_p2) = (planet_2.least().unwrap_or(1).max(1), most(planet_2));
+    let [most_1, most_p2, most_2] = [2, 3, 4].map(|k| space.most(k));
+    let least_p2 = planet_2.least().unwrap_or(1).max(1);
     let whole = planet_2.is_gapless() && ring_2.is_gapless();
     let floats: Vec<[f64; 2]> = windows.iter().map(|w| w.map(|(n, d)| n as f64 / d as f64)).collect();
-    for p1 in planet_1.within(1, (most_1 - sun) / 2 + 2) {
-        for d1 in &space.mismatch {
+    for d1 in &space.mismatch {
+        for p1 in planet_1.within(1, (most_1 - sun - d1) / 2) {
             let r1 = sun + 2 * p1 + d1;
             if r1 <= p1 || !ring_1.contains(r1) {
                 continue;
@@ -161,17 +159,16 @@ mod tests {
         #[test]
         fn lines_find_what_brute_force_finds(
             s in 8i64..16, p in 8i64..14, span in 3i64..12, low in -300i64..300, width in 0i64..90, den in 1i64..12,
-            most in 50i64..90, shifted in any::<bool>(),
+            most in 50i64..90, d in proptest::collection::btree_set(-4i64..=4, 1..4),
         ) {
             let gears = vec![
                 Counts::range(s, s + span), Counts::range(p, p + span), Counts::range(1, most),
                 Counts::range(p, p + span + 4), Counts::range(1, most),
             ];
-            let d: Vec<i64> = if shifted { vec![-1, 0, 2] } else { vec![0] };
             let space = SetSpace::new(SetKind::Wolfrom, gears, Counts::range(3, 3)).mismatch(d.clone());
             let window = [(low, den), (low + width, den)];
             let mut found = vec![];
-            for sun in s..=s + span {
+            for sun in space.suns() {
                 lines(&space, sun, &[window], &mut |t| found.push(t));
             }
             let mut brute = vec![];

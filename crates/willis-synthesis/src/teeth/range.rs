@@ -60,6 +60,20 @@ impl Counts {
         Self { text, kind: Kind::List(list) }
     }
 
+    /// These numbers of a file, within the bounds of what a file may say.
+    ///
+    /// # Errors
+    /// There is none, or one is beyond ±[`MOST_TEETH`].
+    pub(crate) fn checked(numbers: Vec<i64>) -> Result<Self, Box<Diagnostic>> {
+        if numbers.is_empty() {
+            return Err(wrong("no range of whole numbers is given".into()));
+        }
+        match numbers.iter().find(|n| !(-MOST_TEETH..=MOST_TEETH).contains(*n)) {
+            Some(n) => Err(wrong(format!("{n} is beyond ±{MOST_TEETH}"))),
+            None => Ok(Self::list(numbers)),
+        }
+    }
+
     /// The only number, where there is only one.
     pub fn single(&self) -> Option<i64> {
         match &self.kind {
@@ -129,16 +143,15 @@ impl fmt::Display for Counts {
     }
 }
 
+fn wrong(message: String) -> Box<Diagnostic> {
+    let hint = "write a number, `18..60`, `12..`, `..120`, `18..60 odd`, or a list such as `23, 29, 31`";
+    Box::new(Diagnostic::new(Code::OutOfRange, "", message).hint(hint))
+}
+
 impl FromStr for Counts {
     type Err = Box<Diagnostic>;
 
     fn from_str(text: &str) -> Result<Self, Box<Diagnostic>> {
-        let wrong = |message: String| {
-            Box::new(
-                Diagnostic::new(Code::OutOfRange, "", message)
-                    .hint("write a number, `18..60`, `12..`, `..120`, `18..60 odd`, or a list such as `23, 29, 31`"),
-            )
-        };
         let whole = text.trim();
         if whole.is_empty() || whole.len() > 1000 {
             return Err(wrong("no range of whole numbers is given".into()));
@@ -150,8 +163,7 @@ impl FromStr for Counts {
         };
         let number = |part: &str| -> Result<i64, Box<Diagnostic>> {
             match part.trim().parse::<i64>() {
-                Ok(n) if (-MOST_TEETH..=MOST_TEETH).contains(&n) => Ok(n),
-                Ok(n) => Err(wrong(format!("{n} in `{whole}` is beyond ±{MOST_TEETH}"))),
+                Ok(n) => Self::checked(vec![n]).map(|_| n),
                 Err(_) => Err(wrong(format!("`{}` in `{whole}` is no whole number", part.trim()))),
             }
         };
@@ -213,7 +225,7 @@ mod tests {
         for (text, message) in [
             ("", "no range of whole numbers is given"),
             ("18..x", "`x` in `18..x` is no whole number"),
-            ("1..99999", "99999 in `1..99999` is beyond ±10000"),
+            ("1..99999", "99999 is beyond ±10000"),
             ("18..18 odd", "`18..18 odd` contains no number"),
             ("2, 4 odd", "`2, 4 odd` contains no number"),
         ] {

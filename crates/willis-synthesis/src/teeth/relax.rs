@@ -1,7 +1,7 @@
 //! Which wish keeps a result empty, and how far it must give.
 
 use willis::exact::Rational;
-use willis::work::Serial;
+use willis::work::Work;
 
 use super::answer::Relaxation;
 use super::document::Design;
@@ -11,40 +11,77 @@ use super::wish::{Objective, Ratio};
 /// Doublings of a tolerance that are tried.
 const MOST_DOUBLINGS: i32 = 12;
 
-/// How many trains a changed design has, and the best value of an objective among them.
-fn best(design: &Design, objective: Objective) -> Option<(u64, f64)> {
-    let mut asking = design.clone();
-    asking.objectives = vec![objective];
-    let progress = asking.search(Progress::default(), None, &Serial).ok()?;
-    let trains = progress.waterfall.last()?.trains;
-    let teeth = progress.front.first()?;
-    let judged = asking.judge(teeth, asking.needs())?;
-    Some((trains, asking.value(objective, &judged, teeth)))
+/// Searches changed designs, all of them together within the patience of the work.
+struct Asker<'w> {
+    work: &'w dyn Work,
+    /// Seconds that are left, by the estimates of the searches.
+    left: f64,
 }
 
-/// Every wish whose dropping alone makes an empty result non-empty.
-pub(crate) fn relaxations(design: &Design) -> Vec<Relaxation> {
+impl Asker<'_> {
+    /// Whether the search of a design may be begun.
+    fn may(&mut self, design: &Design) -> bool {
+        let Ok(effort) = design.effort() else { return false };
+        let may = effort.seconds <= self.left && !self.work.cancelled();
+        self.left -= if may { effort.seconds } else { 0.0 };
+        may
+    }
+
+    /// How many trains a changed design has, and the best value of an objective among them; none where there are none or
+    /// the search was not finished.
+    fn best(&mut self, design: &Design, objective: Objective) -> Option<(u64, f64)> {
+        if !self.may(design) {
+            return None;
+        }
+        let mut asking = design.clone();
+        asking.objectives = vec![objective];
+        let progress = asking.search(Progress::default(), None, self.work).ok()?;
+        if !progress.is_complete() {
+            return None;
+        }
+        let trains = progress.waterfall.last()?.trains;
+        let teeth = progress.front.first()?;
+        let judged = asking.judge(teeth, asking.needs())?;
+        Some((trains, asking.value(objective, &judged, teeth)))
+    }
+
+    /// The ratio of a state nearest to the target of this number, where only the other targets are windows.
+    fn nearest(&mut self, design: &Design, target: usize) -> Option<f64> {
+        let mut open = design.clone();
+        let (state, own) = &mut open.targets[target];
+        let state = *state;
+        let aim = own.ratio.clone();
+        // Nothing excludes any ratio of this state.
+        let wide = Rational::from(1_000_000);
+        own.ratio.windows = vec![[-wide.clone(), wide]];
+        if !self.may(&open) {
+            return None;
+        }
+        let mut best: Option<(f64, f64)> = None;
+        let whole = open.for_each_ratio(self.work, &mut |teeth| {
+            let ratio = open.layout.states[state].ratio.at(&open.variables(teeth));
+            let off = aim.deviation(ratio);
+            if best.is_none_or(|b| off < b.0) {
+                best = Some((off, ratio));
+            }
+        });
+        best.filter(|_| whole).map(|b| b.1)
+    }
+}
+
+/// Every wish whose dropping alone makes an empty result non-empty. Those that would take longer than the patience of the
+/// work, and those that come after it was cancelled, are left out.
+pub(crate) fn relaxations(design: &Design, work: &dyn Work) -> Vec<Relaxation> {
+    let mut asker = Asker { work, left: work.patience() };
     let mut found = vec![];
     let plural = |n: u64| if n == 1 { "1 train satisfies".to_owned() } else { format!("{n} trains satisfy") };
     // Tolerances: all ratios together, wider and wider, until something is found.
+    let mut wider = design.clone();
     for doubling in 1..=MOST_DOUBLINGS {
-        let mut wider = design.clone();
-        let factor = Rational::from(1 << doubling);
-        for (_, t) in &mut wider.targets {
-            let aim = &t.ratio.aim;
-            let [a, b] = [&t.ratio.windows[0], &t.ratio.windows[t.ratio.windows.len() - 1]].map(|w| w.clone());
-            let own = if aim.sign() >= 0 { b } else { a };
-            let half = &(&own[1] - &own[0]) / &Rational::from(2);
-            let half = if half.is_zero() { &aim.abs() * &Rational::new(1, 1000) } else { half };
-            let width = &half * &factor;
-            if width >= aim.abs() {
-                break;
-            }
-            let any_sign = t.ratio.windows.len() > 1;
-            let widened = Ratio::within([aim - &width, aim + &width], any_sign);
-            t.ratio = Ratio { aim: aim.clone(), ..widened };
+        if !widen(design, &mut wider, &Rational::from(1 << doubling)) {
+            break;
         }
-        if let Some((trains, error)) = best(&wider, Objective::Error) {
+        if let Some((trains, error)) = asker.best(&wider, Objective::Error) {
             let words = format!(
                 "with every other wish the nearest ratios are off by {:.3} %; a tolerance of {:.3} % finds the first train",
                 100.0 * error,
@@ -58,22 +95,13 @@ pub(crate) fn relaxations(design: &Design) -> Vec<Relaxation> {
     if design.targets.len() > 1 {
         for k in 0..design.targets.len() {
             let mut without = design.clone();
-            let (state, target) = without.targets.remove(k);
-            if let Some((trains, _)) = best(&without, Objective::Error) {
-                let mut nearest = design.clone();
-                // Nothing excludes any ratio of this state.
-                let wide = Rational::from(1_000_000);
-                nearest.targets[k].1.ratio =
-                    Ratio { aim: target.ratio.aim.clone(), windows: vec![[-wide.clone(), wide]] };
-                let others = nearest.targets.clone();
-                let near = best_ratio(&nearest, k, state);
-                debug_assert_eq!(others.len(), design.targets.len());
-                let words = format!(
-                    "without the ratio of state {}, {} the rest; the nearest one there is {:.4}",
-                    target.state,
-                    plural(trains),
-                    near.unwrap_or(f64::NAN)
-                );
+            let (_, target) = without.targets.remove(k);
+            if let Some((trains, _)) = asker.best(&without, Objective::Error) {
+                let near = asker.nearest(design, k);
+                let mut words = format!("without the ratio of state {}, {} the rest", target.state, plural(trains));
+                if let Some(near) = near {
+                    words += &format!("; the nearest one there is {near:.4}");
+                }
                 found.push(Relaxation {
                     wish: format!("ratio of state {}", target.state),
                     now: Some(target.ratio.aim.to_f64()),
@@ -90,7 +118,7 @@ pub(crate) fn relaxations(design: &Design) -> Vec<Relaxation> {
         for s in &mut without.sets {
             s.space.rules.retain(|r| r != rule);
         }
-        if let Some((trains, _)) = best(&without, Objective::Error) {
+        if let Some((trains, _)) = asker.best(&without, Objective::Error) {
             let words = format!("without the rule `{rule}`, {} the wish", plural(trains));
             found.push(Relaxation { wish: rule.name().into(), now: None, needed: None, trains, words });
         }
@@ -113,7 +141,7 @@ pub(crate) fn relaxations(design: &Design) -> Vec<Relaxation> {
                 s.space.ring_limit = None;
             }
         }
-        if let Some((trains, needed)) = best(&without, objective) {
+        if let Some((trains, needed)) = asker.best(&without, objective) {
             let (scale, unit) = if name == "ring_diameter" && design.metric { (1e3, " mm") } else { (1.0, "") };
             let verb = if objective.is_better_high() { "at most" } else { "at least" };
             let words = format!(
@@ -128,27 +156,21 @@ pub(crate) fn relaxations(design: &Design) -> Vec<Relaxation> {
     found
 }
 
-/// The ratio of a state nearest to its target, where only the other targets are windows.
-fn best_ratio(design: &Design, target: usize, state: usize) -> Option<f64> {
-    let mut asking = design.clone();
-    // Only the deviation of this state counts.
-    asking.objectives = vec![Objective::Error];
-    for (k, (_, t)) in asking.targets.iter_mut().enumerate() {
-        if k != target {
-            // Every ratio in the window is as good: the deviation is measured at the target asked for alone.
-            let windows = t.ratio.windows.clone();
-            t.ratio = Ratio { aim: t.ratio.aim.clone(), windows };
+/// Widens the windows of a design by a factor, of every target where that leaves out the ratio 0; the others keep what they
+/// have. Whether any was widened.
+fn widen(design: &Design, wider: &mut Design, factor: &Rational) -> bool {
+    let mut some = false;
+    for ((_, t), (_, wide)) in design.targets.iter().zip(&mut wider.targets) {
+        let (aim, windows) = (&t.ratio.aim, &t.ratio.windows);
+        let [low, high] = &windows[if aim.sign() >= 0 { windows.len() - 1 } else { 0 }];
+        let half = &(high - low) / &Rational::from(2);
+        let half = if half.is_zero() { &aim.abs() * &Rational::new(1, 1000) } else { half };
+        let width = &half * factor;
+        if width < aim.abs() {
+            let widened = Ratio::within([aim - &width, aim + &width], windows.len() > 1);
+            wide.ratio = Ratio { aim: aim.clone(), ..widened };
+            some = true;
         }
     }
-    let mut best: Option<(f64, f64)> = None;
-    let aim = asking.targets[target].1.ratio.clone();
-    asking.for_each(|teeth| {
-        let teeth: Vec<Vec<i64>> = teeth.iter().map(|t| t.to_vec()).collect();
-        let ratio = asking.layout.states[state].ratio.at(&asking.variables(&teeth));
-        let off = aim.deviation(ratio);
-        if best.is_none_or(|b| off < b.0) {
-            best = Some((off, ratio));
-        }
-    });
-    best.map(|b| b.1)
+    some
 }

@@ -7,10 +7,9 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::named::Named;
 use willis::work::Work;
 
-use super::answer::{Completeness, DesignAnswer, DesignRow, Relaxation, SetRange, SetRow, Space, StateRow};
+use super::answer::{Completeness, DesignAnswer, DesignRow, SetRange, SetRow, Space, StateRow};
 use super::document::{Design, substitute};
-use super::fit::{Phase, gcd};
-use super::layout::SetKind;
+use super::fit::Phase;
 use super::search::{Judged, Needs, Progress, Teeth};
 use super::wish::Objective;
 
@@ -64,11 +63,20 @@ impl Design {
     /// ```
     pub fn answer(&self, request: &Request, work: &dyn Work) -> Result<DesignAnswer, Diagnostics> {
         let progress = self.search(Progress::default(), request.shard, work)?;
-        Ok(self.answer_of(progress, request))
+        self.answer_of(progress, request, work)
     }
 
-    /// The answer of a search, finished or not.
-    pub fn answer_of(&self, progress: Progress, request: &Request) -> DesignAnswer {
+    /// The answer of a search, finished or not. An empty one is searched for what must give, as far as the work allows.
+    ///
+    /// # Errors
+    /// The progress is that of another design.
+    pub fn answer_of(
+        &self,
+        progress: Progress,
+        request: &Request,
+        work: &dyn Work,
+    ) -> Result<DesignAnswer, Diagnostics> {
+        self.owns(&progress)?;
         let sort = request.sort.or(self.objectives.first().copied()).unwrap_or(Objective::Error);
         let mut front: Vec<(f64, Teeth, Judged)> = progress
             .front
@@ -86,8 +94,7 @@ impl Design {
             .enumerate()
             .map(|(k, (_, teeth, judged))| self.row(k as u64 + 1, teeth, judged))
             .collect();
-        let done: u64 = progress.done.iter().map(|d| d[1] - d[0]).sum();
-        let complete = done == progress.of;
+        let (done, complete) = (progress.steps_done(), progress.is_complete());
         let space = self.space();
         let left = progress.waterfall.last().map_or(0, |s| s.trains);
         let mut diagnostics = vec![];
@@ -110,9 +117,9 @@ impl Design {
             let message = "the efficiency of some rows is not proved to be the only one; see their verdicts";
             diagnostics.push(Diagnostic::new(Code::NotEnumerated, "", message));
         }
-        let relaxations = if complete && left == 0 { self.relaxations() } else { vec![] };
+        let relaxations = if complete && left == 0 { super::relax::relaxations(self, work) } else { vec![] };
         let statement = self.statement(&space, complete, done, progress.of, left);
-        DesignAnswer {
+        Ok(DesignAnswer {
             format: Format::new(),
             name: self.name.clone(),
             wish: self.wish(),
@@ -125,7 +132,7 @@ impl Design {
             rows,
             relaxations,
             diagnostics,
-        }
+        })
     }
 
     /// Ratios that no basic ratios of these ranges reach together: single ones, else pairs, else all.
@@ -169,8 +176,8 @@ impl Design {
         let what = format!("{}. {} candidates", sets.join(". "), many(space.candidates));
         if complete {
             format!(
-                "{what}, all examined or excluded by exact bounds; {left} sets of tooth numbers satisfy the wish; nothing \
-                 else exists in this space."
+                "{what}, all examined or excluded by bounds with a margin for rounding; {left} sets of tooth numbers \
+                 satisfy the wish; nothing else exists in this space."
             )
         } else {
             let share = if of == 0 { 0.0 } else { 100.0 * done as f64 / of as f64 };
@@ -306,19 +313,12 @@ impl Design {
                 let chosen = planets.last().copied().unwrap_or(3);
                 let mut named: Vec<(String, i64)> =
                     space.kind.gears().iter().map(|n| n.to_string()).zip(z.iter().copied()).collect();
-                let short = space.shorts_or_long(z, chosen);
+                let short = space.short(z, chosen);
                 if let Some(short) = short {
                     named.push(("short_planet".into(), short));
                 }
-                let prime = |a: i64, b: i64| gcd(a, b) == 1;
-                let hunting = match space.kind {
-                    SetKind::Simple => prime(z[0], z[1]) && prime(z[1], z[2]),
-                    SetKind::Wolfrom => prime(z[0], z[1]) && prime(z[1], z[2]) && prime(z[3], z[4]),
-                    SetKind::Ravigneaux => {
-                        let short = short.unwrap_or(z[2]);
-                        prime(z[1], z[2]) && prime(z[2], z[3]) && prime(z[0], short) && prime(short, z[2])
-                    }
-                };
+                let all: Vec<i64> = z.iter().copied().chain(short).collect();
+                let hunting = space.kind.hunts(&all);
                 let phase: Phase = item.phase(0, chosen);
                 let shifts =
                     s.shifts(z, short).map(|x| named.iter().map(|(n, _)| n.clone()).zip(x).collect::<Named<f64>>());
@@ -368,7 +368,7 @@ impl Design {
             let planets = own.map(|o| o.chosen).or(last).unwrap_or(s.space.planets[0]);
             let short = match own {
                 Some(o) => o.teeth.get("short_planet").copied(),
-                None => s.space.shorts_or_long(z, planets),
+                None => s.space.short(z, planets),
             };
             let shifts: Option<Vec<f64>> = match own {
                 Some(o) => o.shifts.as_ref().map(|x| x.iter().map(|(_, v)| *v).collect()),
@@ -390,10 +390,5 @@ impl Design {
             document["notes"] = toml_edit::value(notes.trim());
         }
         document.to_string()
-    }
-
-    /// For an empty result: every wish whose dropping alone makes it non-empty, and how far it must give.
-    fn relaxations(&self) -> Vec<Relaxation> {
-        super::relax::relaxations(self)
     }
 }

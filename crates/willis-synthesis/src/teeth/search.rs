@@ -1,5 +1,6 @@
 //! The search: every tooth number of a design file, counted and judged.
 
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
@@ -37,6 +38,9 @@ pub(crate) type Teeth = Vec<Vec<i64>>;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Progress {
+    /// What it belongs to: the text of the design file; empty before the search has begun.
+    #[serde(default)]
+    pub design: String,
     /// Steps of the outermost loop that are done, as ranges `[from, to)`, ascending.
     pub done: Vec<[u64; 2]>,
     /// All steps of the outermost loop.
@@ -45,6 +49,18 @@ pub struct Progress {
     pub waterfall: Vec<Stage>,
     /// The front: tooth numbers of every designed set.
     pub front: Vec<Teeth>,
+}
+
+impl Progress {
+    /// How many steps are done.
+    pub fn steps_done(&self) -> u64 {
+        self.done.iter().map(|d| d[1].saturating_sub(d[0])).sum()
+    }
+
+    /// Whether all steps are done. A search that has not begun does not know how many there are.
+    pub fn is_complete(&self) -> bool {
+        !self.design.is_empty() && self.steps_done() == self.of
+    }
 }
 
 /// What is known of tooth numbers without a certificate.
@@ -180,6 +196,36 @@ impl Design {
         });
     }
 
+    /// Calls `found` with tooth numbers of every combination of basic ratios that [`Design::count`] counts. False where
+    /// the work was cancelled before all of them.
+    pub(crate) fn for_each_ratio(&self, work: &dyn Work, found: &mut dyn FnMut(&Teeth)) -> bool {
+        struct Ratios<'a>(&'a mut dyn FnMut(&Teeth));
+        impl Receive for Ratios<'_> {
+            fn single(&mut self, item: &Item) {
+                if item.is_admissible() {
+                    (self.0)(&vec![item.teeth.clone()]);
+                }
+            }
+            fn coupled(&mut self, groups: &[&Group]) {
+                let first = |g: &&Group| g.items.iter().find(|i| i.is_admissible()).map(|i| i.teeth.clone());
+                if let Some(teeth) = groups.iter().map(first).collect() {
+                    (self.0)(&teeth);
+                }
+            }
+        }
+        let mut whole = true;
+        self.walk(false, &mut |outer, walk| {
+            for step in 0..outer {
+                if work.cancelled() {
+                    whole = false;
+                    return;
+                }
+                walk(step..step + 1, &mut Ratios(&mut *found));
+            }
+        });
+        whole
+    }
+
     /// The spaces of the sets, in order; sets with the same space share it.
     fn units(&self, every_stage: bool) -> Vec<Unit<'_>> {
         let mut units: Vec<Unit<'_>> = vec![];
@@ -207,8 +253,7 @@ impl Design {
             && lines::is_wolfrom(&self.layout.states[*state].ratio)
             && let Some(windows) = lines::bounds(&target.ratio.windows)
         {
-            let most = set.space.gears[2].most().unwrap_or(MOST_TEETH);
-            return Walked::Lines(set.space.gears[0].within(1, most).collect(), windows, &set.space);
+            return Walked::Lines(set.space.suns().collect(), windows, &set.space);
         }
         Walked::Nest
     }
@@ -342,15 +387,17 @@ impl Design {
     /// when the work is cancelled. The result of parts does not depend on their order.
     ///
     /// # Errors
-    /// The space is too large, or takes longer than the work's patience.
+    /// The space is too large, takes longer than the work's patience, or the progress is that of another design.
     pub fn search(
         &self,
         mut progress: Progress,
         shard: Option<(u64, u64)>,
         work: &dyn Work,
     ) -> Result<Progress, Diagnostics> {
+        self.owns(&progress)?;
         work.afford(&self.effort()?).map_err(Diagnostics::from)?;
         self.walk(true, &mut |outer, walk| {
+            progress.design.clone_from(&self.text);
             progress.of = outer as u64;
             if progress.waterfall.is_empty() {
                 progress.waterfall = self.empty_tally();
@@ -402,11 +449,22 @@ impl Design {
         Ok(progress)
     }
 
+    /// Refuses the progress of another design.
+    pub(crate) fn owns(&self, progress: &Progress) -> Result<(), Diagnostics> {
+        if progress.design == self.text || *progress == Progress::default() {
+            return Ok(());
+        }
+        let message = "the progress of a search for another design cannot be used for this one";
+        Err(Diagnostic::new(Code::Unfit, "", message).hint("give the design file with which it was begun").into())
+    }
+
     /// Two parts of one search as one.
     ///
     /// # Errors
     /// They are of different searches, or overlap.
     pub fn merge(&self, a: Progress, b: Progress) -> Result<Progress, Diagnostics> {
+        self.owns(&a)?;
+        self.owns(&b)?;
         let overlap = a.done.iter().any(|x| b.done.iter().any(|y| x[0] < y[1] && y[0] < x[1]));
         if a.of != b.of || overlap || a.waterfall.len() != b.waterfall.len() {
             let message =
@@ -612,6 +670,19 @@ struct Judge<'d> {
 }
 
 impl Judge<'_> {
+    /// Takes one class of each set in turn.
+    fn choose(&mut self, from: usize, classes: &[Vec<Class<'_>>], teeth: &mut Teeth, [trains, designs]: [u64; 2]) {
+        let Some((first, rest)) = classes.split_first() else {
+            return self.further(from, teeth.clone(), trains, designs, &[]);
+        };
+        for class in first {
+            teeth.push(class.smallest.to_vec());
+            let counts = [trains.saturating_mul(class.counts[0]), designs.saturating_mul(class.counts[1])];
+            self.choose(from, rest, teeth, counts);
+            teeth.pop();
+        }
+    }
+
     /// Beyond the stages of teeth: judges, counts, and offers to the front.
     fn further(&mut self, from: usize, teeth: Teeth, trains: u64, designs: u64, by_planets: &[u64]) {
         let design = self.design;
@@ -636,20 +707,15 @@ impl Judge<'_> {
 impl Receive for Judge<'_> {
     fn single(&mut self, item: &Item) {
         let stages = item.passed.len();
-        let each = |stage: usize| {
-            let bits = item.passed[stage];
-            item.embodiments.iter().enumerate().map(move |(k, e)| if bits >> k & 1 == 1 { u64::from(*e) } else { 0 })
-        };
         for (s, stage) in self.part.tally.iter_mut().enumerate().take(stages) {
             stage.trains += u64::from(item.passed[s] != 0);
-            // Before clearance short planets are not yet looked for.
-            for (x, n) in stage.by_planets.0.iter_mut().zip(each(s)) {
-                stage.designs += n;
+            stage.designs += item.designs(s);
+            for (x, n) in stage.by_planets.0.iter_mut().zip(item.by_planets(s)) {
                 x.1 += n;
             }
         }
         if item.is_admissible() {
-            let by: Vec<u64> = each(stages - 1).collect();
+            let by: Vec<u64> = item.by_planets(stages - 1).collect();
             self.further(stages, vec![item.teeth.clone()], 1, by.iter().sum(), &by);
         }
         debug_assert!(self.single);
@@ -662,19 +728,34 @@ impl Receive for Judge<'_> {
             stage.trains += all(&|g| g.trains[s]);
             stage.designs += all(&|g| g.designs[s]);
         }
-        let (trains, designs) = (all(&|g| last_of(&g.trains)), all(&|g| last_of(&g.designs)));
-        if trains > 0 {
-            // All items of a group move alike; the smallest stands for them.
-            let smallest = |(g, s): (&&Group, &super::document::DesignedSet)| {
-                let fit = g.items.iter().filter(|i| i.is_admissible());
-                fit.min_by_key(|i| (s.space.ring(&i.teeth), i.teeth.clone())).map(|i| i.teeth.clone())
-            };
-            let teeth: Option<Teeth> = groups.iter().zip(&self.design.sets).map(smallest).collect();
-            if let Some(teeth) = teeth {
-                self.further(stages, teeth, trains, designs, &[]);
-            }
+        if all(&|g| last_of(&g.trains)) > 0 {
+            let sets = groups.iter().zip(&self.design.sets);
+            let classes: Vec<Vec<Class<'_>>> = sets.map(|(g, s)| classes(g, &s.space, self.needs.speeds)).collect();
+            self.choose(stages, &classes, &mut vec![], [1, 1]);
         }
     }
+}
+
+/// Items of a group that move alike: the smallest stands for them, trains and designs are counted.
+struct Class<'g> {
+    smallest: &'g [i64],
+    counts: [u64; 2],
+}
+
+/// The admissible items of a group by how they move. Members move alike in all of them, planets where also what sets their
+/// speed is the same.
+fn classes<'g>(group: &'g Group, space: &SetSpace, with_planets: bool) -> Vec<Class<'g>> {
+    let mut all: BTreeMap<_, Class<'g>> = BTreeMap::new();
+    for item in group.items.iter().filter(|i| i.is_admissible()) {
+        let teeth = &item.teeth[..];
+        let key = with_planets.then(|| space.planet_class(teeth));
+        let class = all.entry(key).or_insert(Class { smallest: teeth, counts: [0, 0] });
+        class.counts[0] += 1;
+        class.counts[1] += item.designs(item.passed.len() - 1);
+        let size = |z: &'g [i64]| (space.ring(z), z);
+        class.smallest = [class.smallest, teeth].into_iter().min_by_key(|z| size(z)).unwrap_or(teeth);
+    }
+    all.into_values().collect()
 }
 
 #[cfg(test)]
@@ -853,6 +934,136 @@ mod tests {
                 assert_eq!(narrow.count().trains, brute, "{} {percent} %", narrow.name);
             }
         }
+    }
+
+    /// A designed set with a second one behind it, both with these tables.
+    fn two_sets(first: &str, second: &str, wish: &str) -> Design {
+        let text = format!(
+            r#"
+            format = 1
+            name = "two"
+            members = ["a", "c1", "b", "c2"]
+            terminals = ["a", "c2"]
+            [design]
+            {wish}
+            [[set]]
+            name = "P1"
+            mesh_efficiency = 0.99
+            carrier = "c1"
+            {first}
+            [[set]]
+            name = "P2"
+            mesh_efficiency = 0.99
+            carrier = "c2"
+            {second}
+            "#
+        );
+        Design::from_toml(&text).unwrap_or_else(|e| panic!("{}", e.render("design", &text, false)))
+    }
+
+    /// Coupled sets under limits, and the front: what every train by itself gives.
+    #[test]
+    fn coupled_sets_are_judged_like_every_train_by_itself() {
+        struct Patient;
+        impl Work for Patient {
+            fn patience(&self) -> f64 {
+                f64::INFINITY
+            }
+        }
+        let fixed = |sun: &str| {
+            format!(
+                "sun = {{ member = \"{sun}\", teeth = \"30\" }}\nring = {{ member = \"frame\", teeth = \"70\" }}\n\
+                 planet = {{ teeth = \"20\", count = 4 }}"
+            )
+        };
+        let simple = "sun = { member = \"a\", teeth = \"30, 35\" }\nplanet = { teeth = \"12..40\", count = \"2, 3\" }\n\
+                      ring = { member = \"frame\", teeth = \"72, 84\" }";
+        let wolfrom = "type = \"stepped\"\nsuns = [{ member = \"a\", teeth = \"12..24\", planet_teeth = \"15..30\" }]\n\
+                       rings = [{ member = \"frame\", teeth = \"40..80\", planet_teeth = \"15..30\" }, \
+                       { member = \"b\", teeth = \"40..80\", planet_teeth = \"15..30\" }]";
+        let mut all = vec![
+            two_sets(simple, &fixed("c1"), "mismatch = [-2, 0, 2]\ntarget = [{ ratio = [9, 14] }]"),
+            two_sets(wolfrom, &fixed("b"), "mismatch = [-2, 0, 2]\ntarget = [{ ratio = [150, 155] }]"),
+        ];
+        all.extend(cases().iter().filter(|c| !c.0.contains("stepped")).map(|(t, r)| design(t, r, "[]")));
+        for mut design in all {
+            assert!(design.sets.len() > 1);
+            design.objectives = vec![Objective::PlanetSpin, Objective::RingDiameter];
+            let mut brute: Vec<(Teeth, Judged)> = vec![];
+            design.for_each(|t| {
+                let teeth: Teeth = t.iter().map(|z| z.to_vec()).collect();
+                let judged = design.judge(&teeth, Needs { speeds: true, ..Needs::default() }).unwrap();
+                brute.push((teeth, judged));
+            });
+            let mut spins: Vec<f64> = brute.iter().map(|b| b.1.planet_spin).collect();
+            spins.sort_by(f64::total_cmp);
+            assert!(spins.len() > 3, "{}", design.name);
+            for limit in [None, Some(spins[0]), Some(spins[spins.len() / 3]), Some(spins[spins.len() * 3 / 4])] {
+                // Away from ties of rounding.
+                design.limits.planet_spin = limit.map(|l| l * (1.0 + 1e-9));
+                let found = design.search(Progress::default(), None, &Patient).unwrap();
+                let (mut trains, mut designs, mut front) = (0, 0, Front::default());
+                for (teeth, judged) in brute.iter().filter(|b| design.meets(&b.1).all(|m| m)) {
+                    let items = teeth.iter().zip(&design.sets).map(|(z, s)| s.space.item(z.clone()));
+                    trains += 1;
+                    designs += items.map(|i| i.designs(i.passed.len() - 1)).product::<u64>();
+                    front.offer(design.point(judged, teeth), teeth.clone());
+                }
+                let last = found.waterfall.last().unwrap();
+                assert_eq!((last.trains, last.designs), (trains, designs), "{} {limit:?}", design.name);
+                let rounded = |p: Vec<f64>| p.iter().map(|x| (x * 1e6).round() as i64).collect::<Vec<_>>();
+                let mut points: Vec<_> = front.into_sorted().into_iter().map(|p| rounded(p.0)).collect();
+                points.dedup();
+                let mut own: Vec<_> = found
+                    .front
+                    .iter()
+                    .map(|t| rounded(design.point(&design.judge(t, Needs::ALL).unwrap(), t)))
+                    .collect();
+                own.dedup();
+                assert_eq!(own, points, "{} {limit:?}", design.name);
+            }
+        }
+    }
+
+    #[test]
+    fn a_fixed_second_set_takes_no_train_away() {
+        let first = "sun = { member = \"a\", teeth = 30 }\nplanet = { teeth = \"12..40\" }\n\
+                     ring = { member = \"frame\", teeth = 72 }";
+        let second = "sun = { member = \"c1\", teeth = \"30\" }\nplanet = { teeth = \"20\", count = 4 }\n\
+                      ring = { member = \"frame\", teeth = \"70\" }";
+        let wish = "mismatch = [-2, 0, 2]\nlimits = { planet_spin = 1.0 }\ntarget = [{ ratio = [9, 14] }]";
+        let design = two_sets(first, second, wish);
+        let found = design.search(Progress::default(), None, &willis::work::Serial).unwrap();
+        assert_eq!(found.waterfall.last().unwrap().trains, 1);
+    }
+
+    #[test]
+    fn a_search_knows_what_it_is_of() {
+        use super::super::report::Request;
+        let serial = &willis::work::Serial;
+        let wish = |ratio: &str| {
+            let second = "sun = { member = \"c1\", teeth = \"30\" }\nplanet = { teeth = \"20\", count = 4 }\n\
+                          ring = { member = \"frame\", teeth = \"70\" }";
+            two_sets(
+                "sun = { member = \"a\", teeth = \"20..30\" }\nplanet = { teeth = \"12..40\" }\n\
+                 ring = { member = \"frame\", teeth = 72 }",
+                second,
+                &format!("target = [{{ ratio = {ratio} }}]"),
+            )
+        };
+        let (one, other) = (wish("12"), wish("14"));
+        // Not begun: it claims nothing.
+        let answer = one.answer_of(Progress::default(), &Request::default(), serial).unwrap();
+        assert!(!answer.completeness.complete && answer.relaxations.is_empty());
+        assert!(answer.completeness.statement.contains("There may be more"));
+        // Begun for another design, or for none that is known.
+        let [a, b] = [1, 2].map(|k| one.search(Progress::default(), Some((k, 2)), serial).unwrap());
+        assert!(other.search(a.clone(), None, serial).is_err());
+        assert!(other.merge(a.clone(), b.clone()).is_err());
+        assert!(other.answer_of(a.clone(), &Request::default(), serial).is_err());
+        let nameless = Progress { design: String::new(), ..a.clone() };
+        assert!(one.search(nameless, None, serial).is_err());
+        assert!(one.merge(a, b).unwrap().is_complete());
     }
 
     #[test]

@@ -53,8 +53,9 @@ pub struct Item {
     pub teeth: Vec<i64>,
     /// For every stage (none, the first rule, the first two, …) the numbers of planets that pass, as bits.
     pub(crate) passed: Vec<u16>,
-    /// For every number of planets so many short planets; ones for sets without.
-    pub(crate) embodiments: Vec<u32>,
+    /// For every stage and number of planets so many short planets, one before they are looked for; nothing for sets
+    /// without.
+    embodiments: Vec<Vec<u32>>,
 }
 
 /// Items of one basic ratio.
@@ -138,11 +139,12 @@ impl SetSpace {
             SetKind::Simple | SetKind::Wolfrom => [0, 1, 2],
             SetKind::Ravigneaux => [1, 2, 3],
         };
-        let most = self.gear(ring).most().unwrap_or(MOST_TEETH).min(MOST_TEETH);
+        let most = self.most(ring);
         let mut all = vec![];
-        for s in self.gear(sun).within(1, most) {
-            for p in self.gear(planet).within(1, (most - s) / 2 + 2) {
-                for d in &self.mismatch {
+        for d in &self.mismatch {
+            // The ring has s + 2 p + d teeth.
+            for s in self.gear(sun).within(1, most - 2 - d) {
+                for p in self.gear(planet).within(1, (most - s - d) / 2) {
                     let r = s + 2 * p + d;
                     if r > p && self.gear(ring).contains(r) {
                         all.push([s, p, r]);
@@ -153,15 +155,29 @@ impl SetSpace {
         all
     }
 
+    /// The most teeth of a gear.
+    pub(crate) fn most(&self, gear: usize) -> i64 {
+        self.gear(gear).most().unwrap_or(MOST_TEETH).min(MOST_TEETH)
+    }
+
+    /// The least mismatch.
+    fn least_mismatch(&self) -> i64 {
+        self.mismatch.iter().copied().min().unwrap_or(0)
+    }
+
+    /// The suns of a Wolfrom drive for which the first ring has teeth enough.
+    pub(crate) fn suns(&self) -> impl Iterator<Item = i64> + '_ {
+        self.gear(0).within(1, self.most(2) - 2 - self.least_mismatch())
+    }
+
     /// Items that grow from the first gears of a set with two variables.
     fn second(&self, [s, p, r]: [i64; 3]) -> Vec<Item> {
         let mut items = vec![];
         match self.kind {
             SetKind::Simple => {}
             SetKind::Wolfrom => {
-                let most = self.gear(4).most().unwrap_or(MOST_TEETH);
-                for p2 in self.gear(3).within(1, most - s - p + 2) {
-                    for d in &self.mismatch {
+                for d in &self.mismatch {
+                    for p2 in self.gear(3).within(1, self.most(4) - s - p - d) {
                         let r2 = s + p + p2 + d;
                         if r2 > p2 && self.gear(4).contains(r2) {
                             items.push(self.item(vec![s, p, r, p2, r2]));
@@ -180,25 +196,35 @@ impl SetSpace {
     pub(crate) fn item(&self, teeth: Vec<i64>) -> Item {
         let all: u16 = ((1u32 << self.planets.len()) - 1) as u16;
         let mut passed = vec![all];
-        let mut embodiments = vec![1; self.planets.len()];
+        let has_shorts = self.kind == SetKind::Ravigneaux;
+        let mut counts = vec![1; self.planets.len()];
+        let mut embodiments = if has_shorts { vec![counts.clone()] } else { vec![] };
         let mut now = all;
-        for rule in &self.rules {
+        for (r, rule) in self.rules.iter().enumerate() {
             if now != 0 {
                 now = self.judge(*rule, &teeth, now);
-                if *rule == Rule::Clearance && self.kind == SetKind::Ravigneaux {
-                    let before = now;
-                    for (k, n) in self.planets.iter().enumerate().filter(|(k, _)| before >> k & 1 == 1) {
-                        embodiments[k] = self.shorts(&teeth, *n).count() as u32;
-                        if embodiments[k] == 0 {
-                            now &= !(1 << k);
-                        }
+                if has_shorts && matches!(rule, Rule::Clearance | Rule::Hunting) {
+                    let so_far = &self.rules[..=r];
+                    for (k, n) in self.planets.iter().enumerate() {
+                        let mut shorts = self.shorts_by(so_far, &teeth, *n);
+                        // What does not have to fit is not counted: one of them is enough.
+                        let is_counted = so_far.contains(&Rule::Clearance);
+                        let some = now >> k & 1 == 1 && shorts.next().is_some();
+                        counts[k] = u32::from(some) + if some && is_counted { shorts.count() as u32 } else { 0 };
+                        now &= !(u16::from(!some) << k);
                     }
                 }
             }
             passed.push(now);
+            if has_shorts {
+                embodiments.push(counts.clone());
+            }
         }
         if let Some(limit) = self.ring_limit {
             passed.push(if self.ring(&teeth) <= limit { now } else { 0 });
+            if has_shorts {
+                embodiments.push(counts);
+            }
         }
         Item { teeth, passed, embodiments }
     }
@@ -221,16 +247,36 @@ impl SetSpace {
         }
     }
 
-    /// Short planets that fit a Ravigneaux set with so many planets.
-    pub(crate) fn shorts<'a>(&'a self, teeth: &[i64], planets: i64) -> impl Iterator<Item = i64> + 'a {
-        let set = Ravigneaux { small_sun: teeth[0], large_sun: teeth[1], long: teeth[2], ring: teeth[3] };
+    /// Short planets with which a Ravigneaux set with so many planets follows these rules: clearance and hunting.
+    fn shorts_by<'a>(&'a self, rules: &[Rule], teeth: &[i64], planets: i64) -> impl Iterator<Item = i64> + 'a {
+        let set = Ravigneaux::of(teeth);
+        let [fit, hunt] = [Rule::Clearance, Rule::Hunting].map(|r| rules.contains(&r));
         let range = self.gears.get(4).map(|c| c.within(1, set.ring));
-        range.into_iter().flatten().filter(move |p| set.short_fits(*p, planets, self.gap))
+        range.into_iter().flatten().filter(move |&p| {
+            (!hunt || SetKind::Ravigneaux.hunts(&[set.small_sun, set.large_sun, set.long, set.ring, p]))
+                && (!fit || set.short_fits(p, planets, self.gap))
+        })
     }
 
-    /// The short planet that a Ravigneaux set gets: the first that fits, else one like the long planet. None for others.
-    pub(crate) fn shorts_or_long(&self, teeth: &[i64], planets: i64) -> Option<i64> {
-        (self.kind == SetKind::Ravigneaux).then(|| self.shorts(teeth, planets).next().unwrap_or(teeth[2]))
+    /// The short planet that a Ravigneaux set gets: the first that fits and follows the rules, else, where it need not
+    /// fit, the first that hunts where it must, or one like the long planet. None for other sets.
+    pub(crate) fn short(&self, teeth: &[i64], planets: i64) -> Option<i64> {
+        (self.kind == SetKind::Ravigneaux).then(|| {
+            let mut fit = self.rules.clone();
+            fit.push(Rule::Clearance);
+            let first = |rules: &[Rule]| self.shorts_by(rules, teeth, planets).next();
+            let must_hunt = self.rules.contains(&Rule::Hunting);
+            first(&fit).or_else(|| must_hunt.then(|| first(&self.rules)).flatten()).unwrap_or(teeth[2])
+        })
+    }
+
+    /// What sets the speeds of the planets, where the basic ratios are given: planets over suns.
+    pub(crate) fn planet_class(&self, z: &[i64]) -> [(i64, i64); 2] {
+        match self.kind {
+            SetKind::Simple => [reduced(z[1], z[0]), (0, 1)],
+            SetKind::Wolfrom => [reduced(z[1], z[0]), reduced(z[3], z[0])],
+            SetKind::Ravigneaux => [reduced(z[2], z[0]), reduced(z[2], z[1])],
+        }
     }
 
     /// How many coaxial tooth numbers there are, without short planets.
@@ -241,10 +287,13 @@ impl SetSpace {
             SetKind::Ravigneaux => seeds.iter().map(|s| self.gear(0).within(1, s[2] - 1).count() as f64).sum(),
             SetKind::Wolfrom => {
                 let (planet, ring) = (self.gear(3), self.gear(4));
-                let most = ring.most().unwrap_or(MOST_TEETH);
+                let most = self.most(4);
                 let of = |[s, p, _]: &[i64; 3]| -> f64 {
                     let fits = |d: &i64| {
                         let a = s + p + d;
+                        if a <= 0 {
+                            return 0;
+                        }
                         let low = (ring.least().unwrap_or(1) - a).max(1);
                         if ring.is_gapless() {
                             planet.within(low, most - a).count()
@@ -290,9 +339,7 @@ impl SetSpace {
                 whole(z[2] - z[1] >= RING_OVER_PLANET && z[4] - z[3] >= RING_OVER_PLANET)
             }
             (SetKind::Ravigneaux, Rule::Interference) => whole(z[3] - z[2] >= RING_OVER_PLANET),
-            (SetKind::Simple, Rule::Hunting) => whole(prime(z[0], z[1]) && prime(z[2], z[1])),
-            (SetKind::Wolfrom, Rule::Hunting) => whole(prime(z[0], z[1]) && prime(z[1], z[2]) && prime(z[3], z[4])),
-            (SetKind::Ravigneaux, Rule::Hunting) => whole(prime(z[1], z[2]) && prime(z[2], z[3])),
+            (_, Rule::Hunting) => whole(self.kind.hunts(z)),
             (SetKind::Simple, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[2] % n == 0),
             (SetKind::Wolfrom, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[2] % n == 0 && z[4] % n == 0),
             (SetKind::Ravigneaux, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[1] % n == 0 && z[3] % n == 0),
@@ -345,16 +392,30 @@ impl SetSpace {
     /// Bounds of the second variable.
     pub(crate) fn second_bounds(&self) -> [f64; 2] {
         let least = |k: usize| self.gear(k).least().unwrap_or(1).max(1) as f64;
-        let most = |k: usize| self.gear(k).most().unwrap_or(MOST_TEETH).min(MOST_TEETH) as f64;
+        let most = |k: usize| self.most(k) as f64;
         match self.kind {
             SetKind::Simple => [0.0, f64::INFINITY],
             SetKind::Wolfrom => {
-                let biggest = most(2).min(2.0 * most(1) + most(0) + 2.0);
-                let p1 = most(1).min(biggest / 2.0 + 1.0);
-                [least(1) / most(0).min(biggest) * 1.0, p1 * most(4).min(MOST_TEETH as f64) / (least(0) * least(3))]
+                // It is p1 r2/(s p2) with r2 > p2 and s + 2 p1 + d = r1.
+                let rest = most(2) - self.least_mismatch() as f64;
+                let (s, p1) = (most(0).min(rest - 2.0), most(1).min((rest - least(0)) / 2.0));
+                [least(1) / s, p1 * most(4) / (least(0) * least(3))]
             }
             SetKind::Ravigneaux => [1.0, most(3) / least(0)],
         }
+    }
+}
+
+impl SetKind {
+    /// Whether no gears that mesh have a common divisor; the last of five gears of a Ravigneaux set is the short planet.
+    pub(crate) fn hunts(self, teeth: &[i64]) -> bool {
+        let meshes: &[[usize; 2]] = match self {
+            Self::Simple => &[[0, 1], [1, 2]],
+            Self::Wolfrom => &[[0, 1], [1, 2], [3, 4]],
+            Self::Ravigneaux => &[[1, 2], [2, 3], [0, 4], [4, 2]],
+        };
+        let given = meshes.iter().filter(|m| m[0].max(m[1]) < teeth.len());
+        given.into_iter().all(|[a, b]| gcd(teeth[*a], teeth[*b]) == 1)
     }
 }
 
@@ -417,9 +478,16 @@ impl Group {
 impl Item {
     /// How many designs it is at a stage: numbers of planets, with the short planets of each.
     pub(crate) fn designs(&self, stage: usize) -> u64 {
-        let bits = self.passed[stage];
-        let of = self.embodiments.iter().enumerate().filter(|(k, _)| bits >> k & 1 == 1);
-        of.map(|(_, e)| u64::from(*e)).sum()
+        self.by_planets(stage).sum()
+    }
+
+    /// The same for every number of planets; noughts follow.
+    pub(crate) fn by_planets(&self, stage: usize) -> impl Iterator<Item = u64> + '_ {
+        let (bits, shorts) = (self.passed[stage], self.embodiments.get(stage));
+        (0..MOST_PLANETS).map(move |k| match bits >> k & 1 {
+            0 => 0,
+            _ => shorts.map_or(1, |s| u64::from(s[k])),
+        })
     }
 
     /// Whether it follows all rules with some number of planets.
@@ -430,5 +498,130 @@ impl Item {
     /// The phase of its meshes at the sun.
     pub(crate) fn phase(&self, sun: usize, planets: i64) -> fit::Phase {
         fit::phase(self.teeth[sun], planets)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn items(space: &SetSpace) -> Vec<Vec<i64>> {
+        let mut all = vec![];
+        let bounds = space.bounds();
+        for group in space.groups(true) {
+            let second = space.kind.variables() == 2;
+            let children = if second { group.children(space, true) } else { std::slice::from_ref(&group) };
+            for child in children {
+                let [first, last] = [group.value, child.value].map(|y| y * (1.0 + 1e-12));
+                for (y, b) in [first, last].iter().zip(bounds.as_ref().unwrap()) {
+                    assert!(b[0] <= *y && *y <= b[1] * (1.0 + 1e-9), "{y} {b:?}");
+                }
+                all.extend(child.items.iter().map(|i| i.teeth.clone()));
+            }
+        }
+        all.sort();
+        all
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(80))]
+        /// Every way through a space finds the teeth that trying all numbers finds.
+        #[test]
+        fn groups_find_what_brute_force_finds(
+            s in 1i64..14, p in 1i64..14, spans in [1i64..6, 1..6, 1..6], most in 10i64..60, kind in 0usize..3,
+            mismatch in proptest::collection::btree_set(-4i64..=4, 1..4), second in 10i64..60,
+        ) {
+            let kind = [SetKind::Simple, SetKind::Wolfrom, SetKind::Ravigneaux][kind];
+            let [sun, planet, other] =
+                [Counts::range(s, s + spans[0]), Counts::range(p, p + spans[1]), Counts::range(p, p + spans[2])];
+            let (ring, ring_2) = (Counts::range(1, most), Counts::range(1, second));
+            let all = |c: &Counts| c.within(1, 100).collect::<Vec<i64>>();
+            let mut brute = vec![];
+            for s in all(&sun) { for p in all(&planet) { for d in &mismatch {
+                let r = s + 2 * p + d;
+                if r <= p || !ring.contains(r) {
+                    continue;
+                }
+                match kind {
+                    SetKind::Simple => brute.push(vec![s, p, r]),
+                    SetKind::Ravigneaux => {
+                        brute.extend(all(&other).into_iter().filter(|z| *z < r).map(|z| vec![z, s, p, r]));
+                    }
+                    SetKind::Wolfrom => for p2 in all(&other) { for d in &mismatch {
+                        let r2 = s + p + p2 + d;
+                        if r2 > p2 && ring_2.contains(r2) {
+                            brute.push(vec![s, p, r, p2, r2]);
+                        }
+                    }},
+                }
+            }}}
+            let gears = match kind {
+                SetKind::Simple => vec![sun, planet, ring],
+                SetKind::Wolfrom => vec![sun, planet, ring, other, ring_2],
+                SetKind::Ravigneaux => vec![other, sun, planet, ring],
+            };
+            let space = SetSpace::new(kind, gears, Counts::range(3, 3)).mismatch(mismatch);
+            brute.sort();
+            prop_assert_eq!(space.size(), brute.len() as f64);
+            let mut listed: Vec<Vec<i64>> = space.all().collect();
+            listed.sort();
+            prop_assert_eq!(&listed, &brute);
+            prop_assert_eq!(items(&space), brute);
+        }
+    }
+
+    /// Short planets of Ravigneaux sets: what each rule leaves, by trying every one.
+    #[test]
+    fn short_planets_are_counted_when_they_are_looked_for() {
+        use Rule::{Assembly, Clearance, Hunting, Interference};
+        let gears = ["28..32", "35..38", "17..19", "70..74", "12..30"].map(|t| t.parse::<Counts>().unwrap());
+        let (mut counted, mut none_hunts) = (0, 0);
+        for rules in [&[][..], &[Assembly, Clearance, Interference, Hunting], &[Clearance], &[Hunting]] {
+            let mut space = SetSpace::new(SetKind::Ravigneaux, gears.to_vec(), Counts::range(3, 4))
+                .mismatch(-1..=1)
+                .rules(rules.iter().copied());
+            space.ring_limit = Some(73);
+            let plain = SetSpace { rules: vec![], ring_limit: None, ..space.clone() };
+            for z in plain.all() {
+                let item = space.item(z.clone());
+                let set = Ravigneaux::of(&z);
+                let [s1, s2, long, ring] = [z[0], z[1], z[2], z[3]];
+                for stage in 0..space.stages() {
+                    let so_far = &space.rules[..stage.min(rules.len())];
+                    let has = |r: Rule| so_far.contains(&r);
+                    let expected = [3, 4].map(|n| {
+                        let shorts = (12..=30).filter(|p| {
+                            (!has(Clearance) || set.short_fits(*p, n, space.gap))
+                                && (!has(Hunting) || gcd(s1, *p) == 1 && gcd(*p, long) == 1)
+                        });
+                        let sound = (!has(Assembly) || set.assembles(n))
+                            && (!has(Interference) || ring - long >= RING_OVER_PLANET)
+                            && (!has(Hunting) || gcd(s2, long) == 1 && gcd(long, ring) == 1)
+                            && (stage <= rules.len() || ring <= 73);
+                        let count = shorts.count() as u64;
+                        if !sound {
+                            0
+                        } else if has(Clearance) {
+                            count
+                        } else {
+                            count.min(1)
+                        }
+                    });
+                    let own: Vec<u64> = item.by_planets(stage).take(2).collect();
+                    assert_eq!(own, expected, "{z:?} {so_far:?}");
+                    assert_eq!(item.designs(stage), expected.iter().sum::<u64>());
+                    assert_eq!(item.passed[stage] != 0, expected.iter().any(|e| *e > 0));
+                    counted += expected[0];
+                }
+                // The short planet that is shown follows the rule too.
+                if item.is_admissible() && space.rules.contains(&Hunting) {
+                    let n = if item.passed[item.passed.len() - 1] >> 1 & 1 == 1 { 4 } else { 3 };
+                    assert!(SetKind::Ravigneaux.hunts(&[s1, s2, long, ring, space.short(&z, n).unwrap()]));
+                }
+                none_hunts += u64::from(space.rules.contains(&Hunting) && !item.is_admissible());
+            }
+        }
+        assert!(counted > 1000 && none_hunts > 0);
     }
 }

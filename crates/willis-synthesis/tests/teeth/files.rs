@@ -1,8 +1,8 @@
 //! Rows as train files, and what is said of files that ask for the impossible.
 
 use willis::Model;
-use willis::work::Serial;
-use willis_synthesis::teeth::{Design, Request};
+use willis::work::{Serial, Work};
+use willis_synthesis::teeth::{Design, Progress, Request};
 
 use crate::counts::read;
 use crate::layouts::{simple, wolfrom};
@@ -108,6 +108,103 @@ fn what_is_wrong_is_said_with_its_place() {
     let huge = wolfrom("12..9000", "..10000", "0.99", wish);
     let e = read(&huge).answer(&Request::default(), &Serial).unwrap_err();
     assert_eq!(e.iter().next().unwrap().code.as_str(), "E212");
+}
+
+/// Whatever the form in which a number is written, the same is refused.
+#[test]
+fn forms_of_writing_have_the_same_bounds() {
+    let said = |text: &str| -> Vec<[String; 3]> {
+        let e = Design::from_toml(text).err().unwrap_or_else(|| panic!("{text}"));
+        e.iter()
+            .map(|d| {
+                assert!(d.span.is_some(), "{d:?}");
+                [d.code.as_str().to_owned(), d.place.clone(), d.message.clone()]
+            })
+            .collect()
+    };
+    let target = "target = [{ ratio = 4 }]";
+    let sun =
+        |value: &str| simple("12..40", "..90", target).replacen("teeth = \"12..40\"", &format!("teeth = {value}"), 1);
+    for number in ["9000000000000000000", "-9223372036854775808", "10001", "-10001"] {
+        for form in
+            [format!("[{number}]"), format!("\"{number}\""), format!("[20, {number}]"), format!("\"20, {number}\"")]
+        {
+            let [code, place, message] = &said(&sun(&form))[0];
+            assert_eq!((code.as_str(), place.as_str()), ("E008", "set[0].sun.teeth"), "{form}");
+            assert_eq!(*message, format!("{number} is beyond ±10000"), "{form}");
+        }
+    }
+    // A bare number in a set in which other gears have ranges.
+    for number in ["9000000000000000000", "-9223372036854775808", "10001"] {
+        assert_eq!(said(&sun(number))[0][2], format!("{number} is beyond ±10000"));
+    }
+    for form in ["-5", "0", "[-5]", "[-5, 0]", "\"-5\"", "\"-9..0\"", "\"..0\""] {
+        let [code, place, message] = &said(&sun(form))[0];
+        assert_eq!((code.as_str(), place.as_str()), ("E008", "set[0].sun.teeth"), "{form}");
+        assert!(message.ends_with("contains no number of teeth: a gear has at least 1"), "{message}");
+    }
+    assert!(!said(&sun("[]"))[0][2].is_empty());
+    let wish = |line: &str| simple("12..40", "..90", &format!("{target}\n{line}"));
+    for form in ["[200]", "200", "\"200\"", "[-5]", "[0, 5]", "\"..2\"", "\"0..\"", "[101, 0]"] {
+        let [code, place, message] = &said(&wish(&format!("mismatch = {form}")))[0];
+        assert_eq!((code.as_str(), place.as_str()), ("E008", "design.mismatch"), "{form}");
+        assert!(message.contains("beyond ±4"), "{message}");
+    }
+    for number in ["0.1234567", "2000000", "-1", "-0.5", "1000000.5"] {
+        for form in [number.to_owned(), format!("\"{number}\""), format!("\"{number} modules\"")] {
+            let [code, place, message] = &said(&wish(&format!("gap = {form}")))[0];
+            assert_eq!((code.as_str(), place.as_str()), ("E008", "design.gap"), "{form}");
+            assert!(message.contains("at least 0, with a numerator and denominator of at most a million"), "{message}");
+        }
+    }
+    // What is allowed counts, in every form.
+    for [gap, same] in [["2", "\"2 modules\""], ["1.5", "\"3/2\""]] {
+        let count = |gap: &str| read(&wish(&format!("planets = 5\ngap = {gap}"))).count();
+        assert_eq!(count(gap), count(same));
+        assert!(count(gap).trains < count("0").trains);
+    }
+    let alone = |wish: &str| said(&simple("12..40", "..90", wish))[0].clone();
+    for value in ["\"yes\"", "1"] {
+        let [code, place, _] = alone(&format!("target = [{{ ratio = 4, any_sign = {value} }}]"));
+        assert_eq!((code, place.as_str()), ("E006".into(), "design.target[0].any_sign"));
+    }
+    for value in ["5", "{ ratio = 4 }", "\"4\""] {
+        let [_, place, message] = alone(&format!("target = {value}"));
+        assert_eq!(place, "design.target");
+        assert!(message.contains("a list of tables"), "{message}");
+    }
+}
+
+/// Relaxations are searches: they end when the work does, and a ratio that cannot be widened holds up no other.
+#[test]
+fn relaxations_can_be_cancelled_and_widen_what_they_can() {
+    struct Stops(std::sync::atomic::AtomicUsize);
+    impl Work for Stops {
+        fn cancelled(&self) -> bool {
+            self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 0
+        }
+    }
+    struct Hurry;
+    impl Work for Hurry {
+        fn patience(&self) -> f64 {
+            0.0
+        }
+    }
+    // The first window reaches so far that any wider one would contain 0; the second must give.
+    let wish = "[design]\ntarget = [{ state = \"1\", ratio = [0.01, 4.8] }, { state = \"R\", ratio = -2.1, tolerance = 0.001 }]";
+    let gears =
+        [("small_sun", "30"), ("large_sun", "36"), ("long_planet", "18"), ("ring", "72"), ("short_planet", "12..30")];
+    let ranges = gears.map(|(g, t)| (format!("P1.{g}.teeth"), t));
+    let ranges: Vec<(&str, &str)> = ranges.iter().map(|(p, r)| (p.as_str(), *r)).collect();
+    let design = read(&crate::layouts::example(crate::counts::AOD, wish, &ranges));
+    let progress = design.search(Progress::default(), None, &Serial).unwrap();
+    let answer = |work: &dyn Work| design.answer_of(progress.clone(), &Request::default(), work).unwrap();
+    let found = answer(&Serial);
+    assert!(found.rows.is_empty() && found.completeness.complete);
+    assert!(found.relaxations.iter().any(|r| r.wish == "tolerance"), "{:?}", found.relaxations);
+    assert!(answer(&Stops(std::sync::atomic::AtomicUsize::new(1))).relaxations.is_empty());
+    assert!(answer(&Stops(std::sync::atomic::AtomicUsize::new(0))).relaxations.is_empty());
+    assert!(answer(&Hurry).relaxations.is_empty());
 }
 
 #[test]
