@@ -49,7 +49,7 @@ mod refusal;
 pub mod style;
 pub mod table;
 
-pub use question::{Answer, Attachment, Entry, Extra, File, Form, Given, Of, Options, Question, Request};
+pub use question::{Answer, Attachment, Entry, Extra, File, Form, Given, Holds, Of, Options, Question, Request};
 pub use questions::{QUESTIONS, question};
 pub use refusal::{Refusal, RefusalReport};
 pub use style::quoted;

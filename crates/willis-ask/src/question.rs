@@ -115,6 +115,18 @@ pub struct Attachment {
     pub text: String,
 }
 
+/// What a file that a request names holds: how large it may be, and what its name ends with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Holds {
+    /// A table (CSV).
+    Table,
+    /// A train file, or a design file (TOML).
+    Train,
+    /// What Willis itself wrote, to go on with (JSON).
+    Progress,
+}
+
 impl From<&str> for Attachment {
     fn from(name: &str) -> Self {
         Self { name: name.to_owned(), text: String::new() }
@@ -221,8 +233,8 @@ pub trait Question:
         "text"
     }
 
-    /// Files that the request names and whose text is still to be read.
-    fn attachments(&mut self) -> Vec<&mut Attachment> {
+    /// Files that the request names and whose text is still to be read, with what they hold.
+    fn attachments(&mut self) -> Vec<(&mut Attachment, Holds)> {
         vec![]
     }
 
@@ -266,7 +278,7 @@ pub trait Request: fmt::Debug + Any + Send + Sync {
     fn to_json(&self) -> Value;
 
     /// See [`Question::attachments`].
-    fn attachments(&mut self) -> Vec<&mut Attachment>;
+    fn attachments(&mut self) -> Vec<(&mut Attachment, Holds)>;
 
     /// See [`Question::natural_form`].
     fn natural_form(&self) -> &'static str;
@@ -416,7 +428,7 @@ impl<Q: Question> Request for Q {
         serde_json::to_value(self).expect("plain data")
     }
 
-    fn attachments(&mut self) -> Vec<&mut Attachment> {
+    fn attachments(&mut self) -> Vec<(&mut Attachment, Holds)> {
         Question::attachments(self)
     }
 
@@ -464,6 +476,8 @@ pub struct Entry {
     pub extras: &'static [Extra],
     /// See [`Question::NOTES_FIRST`].
     pub notes_first: bool,
+    /// See [`Question::IS_CUT`].
+    pub is_cut: bool,
     request: fn(Value) -> Result<Box<dyn Request>, serde_json::Error>,
     #[cfg(feature = "schemas")]
     request_schema: fn(&mut SchemaGenerator) -> Schema,
@@ -488,6 +502,7 @@ impl Entry {
             forms: Q::FORMS,
             extras: Q::EXTRAS,
             notes_first: Q::NOTES_FIRST,
+            is_cut: Q::IS_CUT,
             request: |value| Ok(Box::new(serde_json::from_value::<Q>(value)?)),
             #[cfg(feature = "schemas")]
             request_schema: |generator| generator.root_schema_for::<Q>(),

@@ -138,7 +138,7 @@ fn of(entry: &Entry) -> Command {
                 .help("Write into this file; its ending says in which form. A folder where there are several files"),
         )
         .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace files that are there already"));
-    if entry.of != Of::Nothing {
+    if entry.of != Of::Nothing || entry.is_cut {
         let help = "Go on, however long it takes and however large it gets";
         c = c.arg(Arg::new("yes").long("yes").action(ArgAction::SetTrue).help(help));
     }

@@ -10,7 +10,7 @@ use std::path::{Component, Path, PathBuf};
 use clap::ArgMatches;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, printable};
 use willis::model::Model;
-use willis_ask::{Attachment, Given, Refusal, quoted};
+use willis_ask::{Attachment, Given, Holds, Refusal, quoted};
 
 /// What is read: its limits, and what to do when it is not that.
 struct Kind {
@@ -38,6 +38,15 @@ const TABLE: Kind = Kind {
     directory: "name a CSV file in it",
     no_text: "a table is CSV text",
     ending: "csv",
+};
+
+/// How far a search came.
+const PROGRESS: Kind = Kind {
+    most_mib: 256,
+    too_large: "no search writes so much",
+    directory: "name a JSON file in it",
+    no_text: "the progress of a search is JSON text",
+    ending: "json",
 };
 
 /// All tables of a train file together.
@@ -104,12 +113,17 @@ fn pair<'a>(option: &str, text: &'a str, form: &str, example: &str) -> Result<(&
     })
 }
 
-/// Reads a table that is named in a request.
+/// Reads a file that is named in a request.
 ///
 /// # Errors
 /// Why it cannot be read.
-pub fn table(file: &str) -> Result<String, Diagnostics> {
-    of_kind(file, &TABLE)
+pub fn attached(file: &str, holds: Holds) -> Result<String, Diagnostics> {
+    let kind = match holds {
+        Holds::Train => &TRAIN,
+        Holds::Progress => &PROGRESS,
+        _ => &TABLE,
+    };
+    of_kind(file, kind)
 }
 
 fn of_kind(file: &str, kind: &Kind) -> Result<String, Diagnostics> {

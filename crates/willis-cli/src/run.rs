@@ -133,7 +133,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
 pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> {
     let mut request = entry.of_matches(matches).unwrap_or_else(|e| e.exit());
     let asked = Asked::new(entry, matches, request.natural_form())?;
-    let names: Vec<String> = request.attachments().iter().map(|a| a.name.clone()).collect();
+    let names: Vec<String> = request.attachments().iter().map(|(a, _)| a.name.clone()).collect();
     let files: Vec<&String> = matches.try_get_many("file").ok().flatten().into_iter().flatten().collect();
     let read: Vec<&str> = files.iter().map(|f| f.as_str()).chain(names.iter().map(String::as_str)).collect();
     if read.iter().filter(|f| **f == "-").count() > 1 {
@@ -150,8 +150,8 @@ pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Re
     }
     // Before anything is computed for it.
     let typesetter = (asked.form == PDF).then(pdf::Typesetter::find).transpose()?;
-    for file in request.attachments() {
-        match input::table(&file.name) {
+    for (file, holds) in request.attachments() {
+        match input::attached(&file.name, holds) {
             Ok(text) => file.text = text,
             Err(wrong) => return Err(asked.refused(&Refusal::File(wrong, file.clone()), &[])),
         }

@@ -53,9 +53,9 @@ fn read(question: &str, request: &str) -> Result<Box<dyn Request>, Refusal> {
     let entry = willis_ask::question(question).expect("the package asks what is in the list");
     let request: Value = serde_json::from_str(request).expect("the package writes JSON");
     let mut request = entry.request(request)?;
-    for file in request.attachments() {
+    for (file, holds) in request.attachments() {
         if file.text.is_empty() {
-            file.text = willis_cli::input::table(&file.name).map_err(|w| Refusal::File(w, file.clone()))?;
+            file.text = willis_cli::input::attached(&file.name, holds).map_err(|w| Refusal::File(w, file.clone()))?;
         }
     }
     Ok(request)

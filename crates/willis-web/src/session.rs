@@ -551,7 +551,7 @@ fn told(
     let ask = || -> Result<String, Refusal> {
         let entry = entry(question)?;
         let mut request = entry.request(request)?;
-        for file in request.attachments().into_iter().filter(|f| f.text.is_empty()) {
+        for (file, _) in request.attachments().into_iter().filter(|(f, _)| f.text.is_empty()) {
             if let Some(text) = files.get(&file.name) {
                 file.text = text.clone();
             }

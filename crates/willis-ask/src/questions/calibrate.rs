@@ -12,7 +12,7 @@ use willis::work::Work;
 
 use super::amount::of_members;
 use crate::table::Table;
-use crate::{Attachment, Extra, File, Given, Question, Refusal};
+use crate::{Attachment, Extra, File, Given, Holds, Question, Refusal};
 
 /// Fit the laws of a train to tests: factors on tooth friction, bearings, churning, with what is learnt and what is not.
 ///
@@ -83,7 +83,7 @@ impl Question for Calibrate {
         Ok(vec![File::text("calibrated.toml", answer.train_file.clone())])
     }
 
-    fn attachments(&mut self) -> Vec<&mut Attachment> {
-        vec![&mut self.data]
+    fn attachments(&mut self) -> Vec<(&mut Attachment, Holds)> {
+        vec![(&mut self.data, Holds::Table)]
     }
 }

@@ -12,7 +12,7 @@ use willis::work::Work;
 
 use super::names;
 use crate::table::Table;
-use crate::{Attachment, Extra, File, Given, Question, Refusal};
+use crate::{Attachment, Extra, File, Given, Holds, Question, Refusal};
 
 /// Tell what a duty cycle or a load spectrum costs: energies by source, state and direction, the worst rows.
 ///
@@ -102,7 +102,7 @@ impl Question for Cycle {
         Ok(vec![File::text("rows.csv", Table::of_columns("rows", &answer.rows).csv())])
     }
 
-    fn attachments(&mut self) -> Vec<&mut Attachment> {
-        vec![&mut self.profile]
+    fn attachments(&mut self) -> Vec<(&mut Attachment, Holds)> {
+        vec![(&mut self.profile, Holds::Table)]
     }
 }

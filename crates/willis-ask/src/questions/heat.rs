@@ -12,7 +12,7 @@ use willis::work::Work;
 
 use super::amount::values;
 use crate::table::Table;
-use crate::{Attachment, Given, Question, Refusal};
+use crate::{Attachment, Given, Holds, Question, Refusal};
 
 pub(super) use text::of_report;
 
@@ -90,7 +90,7 @@ impl Question for Heat {
         &answer.diagnostics
     }
 
-    fn attachments(&mut self) -> Vec<&mut Attachment> {
-        self.profile.as_mut().into_iter().collect()
+    fn attachments(&mut self) -> Vec<(&mut Attachment, Holds)> {
+        self.profile.as_mut().map(|f| (f, Holds::Table)).into_iter().collect()
     }
 }
