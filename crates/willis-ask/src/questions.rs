@@ -6,6 +6,8 @@ mod calibrate;
 mod check;
 mod compare;
 mod cycle;
+#[cfg(feature = "synthesis")]
+mod design;
 #[cfg(feature = "pictures")]
 mod draw;
 mod explain;
@@ -19,6 +21,8 @@ mod losses;
 mod modes;
 mod names;
 mod new;
+#[cfg(feature = "synthesis")]
+mod parts;
 mod regimes;
 #[cfg(feature = "pictures")]
 mod report;
@@ -35,6 +39,8 @@ pub use calibrate::Calibrate;
 pub use check::Check;
 pub use compare::Compare;
 pub use cycle::{Cycle, CycleAnswer};
+#[cfg(feature = "synthesis")]
+pub use design::{Design, DesignFound};
 #[cfg(feature = "pictures")]
 pub use draw::{Draw, DrawAnswer, Look};
 pub use explain::Explain;
@@ -80,6 +86,8 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Locate>(),
     Entry::of::<Simulate>(),
     Entry::of::<Modes>(),
+    #[cfg(feature = "synthesis")]
+    Entry::of::<Design>(),
     #[cfg(feature = "pictures")]
     Entry::of::<Draw>(),
     #[cfg(feature = "pictures")]

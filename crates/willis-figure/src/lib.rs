@@ -15,6 +15,7 @@ mod lever;
 mod losses;
 mod map;
 mod modes;
+mod pareto;
 mod parts;
 mod regimes;
 mod registry;
@@ -58,6 +59,7 @@ pub use losses::{LossChart, LossSeries, loss_chart};
 pub use map::draw::draw as draw_map;
 pub use map::{EfficiencyMap, MapBorder, MapJoint, MapMark, MapPoint, MapVerdict, efficiency_map};
 pub use modes::draw as draw_modes;
+pub use pareto::{Pareto, ParetoAxis, ParetoPoint, draw as draw_pareto};
 pub use parts::axes::ChartAxis;
 #[cfg(feature = "png")]
 pub use parts::png::png;

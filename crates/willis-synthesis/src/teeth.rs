@@ -23,6 +23,7 @@ mod front;
 mod layout;
 mod lines;
 mod nest;
+mod own;
 mod pairs;
 mod range;
 mod relax;
@@ -31,10 +32,13 @@ mod rule;
 mod search;
 mod shift;
 mod space;
+mod start;
 mod statics;
 mod wish;
 
-pub use answer::{Completeness, DesignAnswer, DesignRow, Relaxation, SetRange, SetRow, Space, Stage, StateRow};
+pub use answer::{
+    Completeness, DesignAnswer, DesignRow, OperationRow, OwnTrain, Relaxation, SetRange, SetRow, Space, Stage, StateRow,
+};
 pub use document::Design;
 pub use front::Front;
 pub use layout::SetKind;
@@ -44,4 +48,5 @@ pub use report::Request;
 pub use rule::Rule;
 pub use search::{Found, Progress};
 pub use space::{Item, SetSpace};
+pub use start::{Start, StartKind};
 pub use wish::{Limits, Objective, Ratio, Requirements, Target};

@@ -33,8 +33,16 @@ pub struct DesignAnswer {
     pub ranked_by: String,
     /// How many trains no other one beats in every objective.
     pub front: u64,
-    /// The trains shown: those of the front, as many as were asked for.
+    /// What the rows are sorted by.
+    pub sorted_by: Objective,
+    /// Whether rows are of all trains that satisfy the wish; else they are of the front.
+    #[serde(default)]
+    pub of_all: bool,
+    /// The trains shown, as many as were asked for.
     pub rows: Vec<DesignRow>,
+    /// The train of the user, judged like the others.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub own: Option<OwnTrain>,
     /// For an empty result: the wishes that alone keep it empty.
     pub relaxations: Vec<Relaxation>,
     /// Warnings and notes.
@@ -136,6 +144,37 @@ pub struct DesignRow {
     pub element_torque: Option<f64>,
     /// Whether all its efficiencies come from the certified solver and are proved unique.
     pub certified: bool,
+    /// The operations of the file, with its laws of friction; shown rows only.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub operations: Named<OperationRow>,
+}
+
+/// A train that exists, among those that were found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct OwnTrain {
+    /// The name of its file.
+    pub name: String,
+    /// The conditions of the wish that it does not meet; empty where it is one of the trains of the space.
+    pub fails: Vec<String>,
+    /// How many trains of the front are at least as good in every objective and better in one.
+    pub better: u64,
+    /// The train, with the mesh efficiencies of the design; its number is 0.
+    pub row: DesignRow,
+}
+
+/// An operation of a train that was found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct OperationRow {
+    /// What can be said of it.
+    pub verdict: Verdict,
+    /// Output over input power with the laws of the file, where it is unique.
+    pub efficiency: Option<f64>,
+    /// All losses, W.
+    pub loss_w: Option<f64>,
 }
 
 /// A set of a train.
@@ -153,6 +192,10 @@ pub struct SetRow {
     pub hunting: bool,
     /// The phase of the meshes at the sun, with the chosen number of planets.
     pub phase: Phase,
+    /// The module: of those allowed the largest with which the ring is within its limit, or the smallest where the ring
+    /// shall be small, m; absent where none is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub module_m: Option<f64>,
     /// Profile shifts by gear, positive outward; absent where there are none that suit.
     pub shifts: Option<Named<f64>>,
 }

@@ -7,7 +7,7 @@
 //! mismatch = [-1, 0, 1]                  # r - s - 2 p and the like; default 0
 //! rules = ["assembly", "clearance", "hunting"]     # default: assembly, clearance
 //! gap = "0.5"                            # between tips of planets, in modules; default 0
-//! module = "0.5 mm"                      # of sets without a geometry
+//! module = ["0.5 mm", "0.6 mm"]          # one, or a list, of sets without a geometry
 //! limits = { ring_diameter = "90 mm", planet_spin = 5, member_speed = 3.0, element_torque = 2.5 }
 //! require = { forward = 0.7, backward = 0.6, lock_margin = 1.5 }
 //! minimize = ["ring_diameter"]
@@ -45,13 +45,22 @@ pub(crate) struct DesignedSet {
     pub index: usize,
     pub name: String,
     pub space: SetSpace,
-    /// Module, m.
-    pub module: Option<f64>,
+    /// Modules that it may have, m, ascending; none where none is given.
+    pub modules: Vec<f64>,
     /// Whether the set has a table `geometry`, so that profile shifts can be written.
     pub has_geometry: bool,
 }
 
 impl DesignedSet {
+    /// The module that a set with such a ring gets: of those that are allowed and with which the ring is not above the
+    /// limit, m, the smallest where the ring shall be small, else the largest, for the strength of its teeth.
+    pub fn module(&self, ring: i64, limit: Option<f64>, small: bool) -> Option<f64> {
+        let fits = |m: &&f64| limit.is_none_or(|l| ring as f64 * **m <= l * (1.0 + 1e-12));
+        let smallest = self.modules.first();
+        let found = if small { smallest } else { self.modules.iter().rev().find(fits).or(smallest) };
+        found.copied()
+    }
+
     /// Profile shifts of its gears, with the short planet of a Ravigneaux set; none where no choice is sound.
     pub fn shifts(&self, teeth: &[i64], short: Option<i64>) -> Option<Vec<f64>> {
         let all: Vec<i64> = teeth.iter().copied().chain(short).collect();
@@ -256,6 +265,18 @@ impl Reader<'_> {
         self.report(d, &path, item.span());
     }
 
+    /// A length or a list of lengths, ascending.
+    fn lengths(&mut self, place: &str, item: &Item) -> Vec<f64> {
+        let Some(list) = item.as_array() else { return self.length(place, item).into_iter().collect() };
+        let mut all: Vec<f64> = list.iter().filter_map(|v| self.length(place, &Item::Value(v.clone()))).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        if list.is_empty() {
+            self.kind(place, item, "a length with its unit, or a list of some,");
+        }
+        all
+    }
+
     fn length(&mut self, place: &str, item: &Item) -> Option<f64> {
         let Some(text) = item.as_str() else {
             self.kind(place, item, "a length with its unit, such as \"90 mm\"");
@@ -277,7 +298,7 @@ impl Reader<'_> {
 }
 
 /// The gears of a set in a file: paths within the set, in the order of [`SetKind::gears`] (and the short planet).
-fn paths(kind: SetKind) -> &'static [&'static str] {
+pub(crate) fn paths(kind: SetKind) -> &'static [&'static str] {
     match kind {
         SetKind::Simple => &["sun.teeth", "planet.teeth", "ring.teeth"],
         SetKind::Wolfrom => {
@@ -289,8 +310,18 @@ fn paths(kind: SetKind) -> &'static [&'static str] {
     }
 }
 
+/// The kind of a set in a file, if it is one whose teeth can be found.
+pub(crate) fn set_kind(set: &Item) -> Option<SetKind> {
+    match set.get("type").and_then(Item::as_str).unwrap_or("simple") {
+        "simple" => Some(SetKind::Simple),
+        "stepped" => Some(SetKind::Wolfrom),
+        "ravigneaux" => Some(SetKind::Ravigneaux),
+        _ => None,
+    }
+}
+
 /// The tables that say how many planets there are.
-fn planet_tables(kind: SetKind) -> &'static [&'static str] {
+pub(crate) fn planet_tables(kind: SetKind) -> &'static [&'static str] {
     match kind {
         SetKind::Simple | SetKind::Wolfrom => &["planet"],
         SetKind::Ravigneaux => &["short_planet", "long_planet"],
@@ -298,7 +329,7 @@ fn planet_tables(kind: SetKind) -> &'static [&'static str] {
 }
 
 /// What stands at a path of names and positions.
-fn at<'d>(item: &'d Item, path: &str) -> Option<&'d Item> {
+pub(crate) fn at<'d>(item: &'d Item, path: &str) -> Option<&'d Item> {
     let mut now = item;
     for part in path.split('.') {
         now = match part.parse::<usize>() {
@@ -310,7 +341,7 @@ fn at<'d>(item: &'d Item, path: &str) -> Option<&'d Item> {
 }
 
 /// Tables of a list, whichever way it is written.
-fn tables(item: Option<&Item>) -> usize {
+pub(crate) fn tables(item: Option<&Item>) -> usize {
     match item {
         Some(Item::ArrayOfTables(a)) => a.len(),
         Some(Item::Value(Value::Array(a))) => a.len(),
@@ -319,7 +350,7 @@ fn tables(item: Option<&Item>) -> usize {
 }
 
 /// An item of a list of tables as an item of its own.
-fn nth(item: &Item, k: usize) -> Option<Item> {
+pub(crate) fn nth(item: &Item, k: usize) -> Option<Item> {
     match item {
         Item::ArrayOfTables(a) => a.get(k).map(|t| Item::Table(t.clone())),
         Item::Value(Value::Array(a)) => a.get(k).map(|v| Item::Value(v.clone())),
@@ -395,7 +426,7 @@ impl Design {
             Some(item) => r.gap("design.gap", item),
             None => Some(Length::ZERO),
         };
-        let module = table.get("module").and_then(|i| r.length("design.module", i));
+        let modules = table.get("module").map_or(vec![], |i| r.lengths("design.module", i));
         let limits = Self::limits(table.get("limits"), r);
         let require = Self::require(table.get("require"), r);
         let mut objectives: Vec<Objective> = vec![];
@@ -432,7 +463,7 @@ impl Design {
                 .hint("add `[[design.target]]` with `ratio = 4.7`, and `state = \"1\"` where the train has states");
             r.report(d, "design.target", None);
         }
-        let sets = Self::sets(root, (planets, &mismatch, gap.unwrap_or(Length::ZERO), &rules, module), r);
+        let sets = Self::sets(root, (planets, &mismatch, gap.unwrap_or(Length::ZERO), &rules, &modules), r);
         if r.wrong.has_errors() {
             return None;
         }
@@ -581,7 +612,7 @@ impl Design {
 
     fn sets(
         root: &Item,
-        (planets, mismatch, gap, rules, module): (Option<Counts>, &[i64], Length, &[Rule], Option<f64>),
+        (planets, mismatch, gap, rules, modules): (Option<Counts>, &[i64], Length, &[Rule], &[f64]),
         r: &mut Reader<'_>,
     ) -> Vec<DesignedSet> {
         let mut found = vec![];
@@ -589,12 +620,7 @@ impl Design {
         for index in 0..tables(Some(all)) {
             let Some(set) = nth(all, index) else { continue };
             let place = format!("set[{index}]");
-            let kind = match set.get("type").and_then(Item::as_str).unwrap_or("simple") {
-                "simple" => Some(SetKind::Simple),
-                "stepped" => Some(SetKind::Wolfrom),
-                "ravigneaux" => Some(SetKind::Ravigneaux),
-                _ => None,
-            };
+            let kind = set_kind(&set);
             let ranged = |i: Option<&Item>| i.is_some_and(|i| i.is_str() || i.is_array());
             let has_ranges = |kind: SetKind| {
                 paths(kind).iter().any(|p| ranged(at(&set, p)))
@@ -677,7 +703,7 @@ impl Design {
                 index,
                 name,
                 space,
-                module: own_module.or(module),
+                modules: own_module.map_or_else(|| modules.to_vec(), |m| vec![m]),
                 has_geometry: geometry.is_some(),
             });
         }
@@ -691,7 +717,7 @@ impl Design {
         raw: Vec<(Option<String>, Ratio, Option<Range<usize>>)>,
         (limits, require, objectives, rules): (Limits, Requirements, Vec<Objective>, Vec<Rule>),
     ) -> Result<Self, Diagnostics> {
-        let metric = sets.iter().all(|s| s.module.is_some());
+        let metric = sets.iter().all(|s| !s.modules.is_empty());
         if let (Some(limit), false) = (limits.ring_diameter, metric) {
             // A length needs modules; a bare number is one of modules.
             let is_text = root.get("design").and_then(|d| at(d, "limits.ring_diameter")).is_some_and(Item::is_str);
@@ -709,7 +735,7 @@ impl Design {
         }
         if let Some(limit) = limits.ring_diameter {
             for s in &mut sets {
-                let module = if metric { s.module.unwrap_or(1.0) } else { 1.0 };
+                let module = s.modules.first().copied().filter(|_| metric).unwrap_or(1.0);
                 // The largest number of teeth whose reference diameter is not above the limit.
                 s.space.ring_limit = Some((limit / module * (1.0 + 1e-12)).floor().clamp(0.0, 1e9) as i64);
             }
@@ -785,7 +811,9 @@ impl Design {
                 Some(n) => targets.push((n, Target { state: layout.states[n].name.clone(), ratio })),
                 None => {
                     let names = layout.states.iter().map(|s| s.name.as_str());
+                    let unfit = layout.unfit.iter().find(|u| state.as_ref() == Some(&u.0));
                     let mut d = match &state {
+                        Some(_) if unfit.is_some() => unfit.map(|u| u.1.clone()).expect("it was just found"),
                         Some(name) => Diagnostic::missing(Code::UnknownSelection, "state", name, names),
                         None => Diagnostic::new(
                             Code::MissingKey,
@@ -874,7 +902,7 @@ pub(crate) fn substitute(
 }
 
 /// Sets a value at a path within a set, with the tables on the way.
-fn write(document: &mut DocumentMut, set: usize, path: &str, value: Value) {
+pub(crate) fn write(document: &mut DocumentMut, set: usize, path: &str, value: Value) {
     fn within(item: &mut Item, parts: &[&str], value: Value) {
         let Some((first, rest)) = parts.split_first() else {
             let decor = item.as_value().map(|v| v.decor().clone());

@@ -21,6 +21,11 @@ pub struct Front<K> {
     points: Vec<(Vec<f64>, K)>,
 }
 
+/// Whether one point is at least as good as another in every objective.
+pub(crate) fn covers(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(x, y)| x <= y)
+}
+
 impl<K> Default for Front<K> {
     fn default() -> Self {
         Self { points: vec![] }
@@ -33,7 +38,6 @@ impl<K: Ord> Front<K> {
         if point.iter().any(|x| x.is_nan()) {
             return false;
         }
-        let covers = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(x, y)| x <= y);
         if self.points.iter().any(|(p, _)| covers(p, &point) && *p != point) {
             return false;
         }
@@ -44,7 +48,7 @@ impl<K: Ord> Front<K> {
 
     /// Whether a point would be refused.
     pub fn refuses(&self, point: &[f64]) -> bool {
-        self.points.iter().any(|(p, _)| p.iter().zip(point).all(|(x, y)| x <= y) && p != point)
+        self.points.iter().any(|(p, _)| covers(p, point) && p != point)
     }
 
     /// Takes in all points of another front: the result does not depend on how points were divided.

@@ -105,6 +105,8 @@ pub(crate) struct Layout {
     /// Planets of designed sets: member, set, its gear, the sun that drives it and that gear, carrier.
     pub planets: Vec<PlanetOf>,
     pub states: Vec<LayoutState>,
+    /// States for which no ratio can be asked, and why.
+    pub unfit: Vec<(String, Diagnostic)>,
 }
 
 /// A planet of a set that is designed.
@@ -130,7 +132,7 @@ impl Layout {
     /// Compiles a train; `kinds` says which of its sets are designed.
     ///
     /// # Errors
-    /// States without a ratio, and layouts that are too large.
+    /// No state has a ratio, and layouts that are too large.
     pub fn new(train: &Train, kinds: &[Option<SetKind>]) -> Result<Self, Diagnostics> {
         let mut first = Vec::new();
         let mut variables = 0;
@@ -214,16 +216,19 @@ impl Layout {
             elements,
             planets,
             states: vec![],
+            unfit: vec![],
         };
-        let mut wrong = Diagnostics::default();
         let count = train.states().len();
         for state in if count == 0 { vec![None] } else { (0..count).map(Some).collect() } {
             match layout.state(train, state, &ties, &inner) {
                 Ok(compiled) => layout.states.push(compiled),
-                Err(d) => wrong.push(*d),
+                Err(d) => {
+                    let name = state.map_or("as drawn".to_owned(), |k| train.states()[k].name.clone());
+                    layout.unfit.push((name, *d));
+                }
             }
         }
-        if wrong.has_errors() { Err(wrong) } else { Ok(layout) }
+        if layout.states.is_empty() { Err(layout.unfit.into_iter().map(|u| u.1).collect()) } else { Ok(layout) }
     }
 
     fn state(

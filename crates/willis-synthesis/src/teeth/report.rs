@@ -7,8 +7,8 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::named::Named;
 use willis::work::Work;
 
-use super::answer::{Completeness, DesignAnswer, DesignRow, SetRange, SetRow, Space, StateRow};
-use super::document::{Design, substitute};
+use super::answer::{Completeness, DesignAnswer, DesignRow, OperationRow, SetRange, SetRow, Space, StateRow};
+use super::document::{Design, nth, substitute, tables};
 use super::fit::Phase;
 use super::search::{Judged, Needs, Progress, Teeth};
 use super::wish::Objective;
@@ -22,6 +22,10 @@ pub struct Request {
     pub sort: Option<Objective>,
     /// Only a part of the space: its number from 1, of how many.
     pub shard: Option<(u64, u64)>,
+    /// Rows of all trains that satisfy the wish, not only of the front.
+    pub all: bool,
+    /// A train that exists: the name of its file and its text.
+    pub own: Option<(String, String)>,
 }
 
 impl Design {
@@ -78,8 +82,14 @@ impl Design {
     ) -> Result<DesignAnswer, Diagnostics> {
         self.owns(&progress)?;
         let sort = request.sort.or(self.objectives.first().copied()).unwrap_or(Objective::Error);
-        let mut front: Vec<(f64, Teeth, Judged)> = progress
-            .front
+        let (done, complete) = (progress.steps_done(), progress.is_complete());
+        let top = request.top.unwrap_or(20);
+        let of_all = request.all && complete;
+        let shown = match of_all {
+            true => self.best(sort, top, work).ok_or(willis::work::Cancelled)?,
+            false => progress.front.clone(),
+        };
+        let mut chosen: Vec<(f64, Teeth, Judged)> = shown
             .iter()
             .filter_map(|teeth| {
                 let judged = self.judge(teeth, Needs::ALL)?;
@@ -87,14 +97,22 @@ impl Design {
                 Some((if sort.is_better_high() { -value } else { value }, teeth.clone(), judged))
             })
             .collect();
-        front.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
-        let rows: Vec<DesignRow> = front
-            .iter()
-            .take(request.top.unwrap_or(20))
-            .enumerate()
-            .map(|(k, (_, teeth, judged))| self.row(k as u64 + 1, teeth, judged))
-            .collect();
-        let (done, complete) = (progress.steps_done(), progress.is_complete());
+        chosen.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
+        chosen.truncate(top);
+        work.begin("certificates", chosen.len() as u64);
+        let rows = willis::work::map(work, chosen.len(), |k| {
+            let (_, teeth, judged) = &chosen[k];
+            let mut row = self.row(k as u64 + 1, teeth, judged);
+            row.operations = self.operations(teeth);
+            work.advance(1);
+            row
+        });
+        // What was found is not lost because its certificates were interrupted; without them there is no row.
+        let rows: Vec<DesignRow> = rows.unwrap_or_default();
+        let own = match &request.own {
+            Some((name, text)) => Some(self.own(name, text, &progress.front)?),
+            None => None,
+        };
         let space = self.space();
         let left = progress.waterfall.last().map_or(0, |s| s.trains);
         let mut diagnostics = vec![];
@@ -128,8 +146,11 @@ impl Design {
             waterfall: progress.waterfall,
             objectives: self.objectives.clone(),
             ranked_by: "the mesh efficiencies of the file, whatever the load and speed are".into(),
-            front: front.len() as u64,
+            front: progress.front.len() as u64,
+            sorted_by: sort,
+            of_all,
             rows,
+            own,
             relaxations,
             diagnostics,
         })
@@ -194,7 +215,7 @@ impl Design {
             .iter()
             .map(|(_, t)| {
                 let windows: Vec<String> =
-                    t.ratio.windows.iter().map(|[a, b]| format!("{} to {}", a.to_f64(), b.to_f64())).collect();
+                    t.ratio.windows.iter().map(|[a, b]| format!("{} to {}", short(a), short(b))).collect();
                 format!("state {}: ratio {}", t.state, windows.join(" or "))
             })
             .collect();
@@ -247,6 +268,25 @@ impl Design {
         Some(analysis.ratios)
     }
 
+    /// The operations of the file at tooth numbers, with its laws.
+    fn operations(&self, teeth: &Teeth) -> Named<OperationRow> {
+        let names = self.operation_names();
+        if names.is_empty() {
+            return Named::default();
+        }
+        match Model::from_toml(&self.text_of(teeth, None)) {
+            Ok(model) => operations(model.train(), &names),
+            Err(_) => Named::default(),
+        }
+    }
+
+    /// The operations of the file.
+    pub(crate) fn operation_names(&self) -> Vec<String> {
+        let all = self.template.get("operation");
+        let name = |k: usize| nth(all?, k)?.get("name").and_then(toml_edit::Item::as_str).map(str::to_owned);
+        (0..tables(all)).filter_map(name).collect()
+    }
+
     /// What the certified solver says of one state.
     pub(crate) fn certified_ways(&self, teeth: &Teeth, state: &str, judged: &mut Judged) {
         let Some(states) = self.certified(teeth) else { return };
@@ -261,7 +301,7 @@ impl Design {
         judged.self_locking |= row.coast.verdict == Verdict::Locked;
     }
 
-    fn row(&self, number: u64, teeth: &Teeth, judged: &Judged) -> DesignRow {
+    pub(crate) fn row(&self, number: u64, teeth: &Teeth, judged: &Judged) -> DesignRow {
         let certified = self.certified(teeth);
         let y = self.variables(teeth);
         let mut all_unique = certified.is_some();
@@ -322,7 +362,8 @@ impl Design {
                 let phase: Phase = item.phase(0, chosen);
                 let shifts =
                     s.shifts(z, short).map(|x| named.iter().map(|(n, _)| n.clone()).zip(x).collect::<Named<f64>>());
-                (s.name.clone(), SetRow { teeth: Named(named), planets, chosen, hunting, phase, shifts })
+                let module_m = self.module(s, space.ring(z));
+                (s.name.clone(), SetRow { teeth: Named(named), planets, chosen, hunting, phase, module_m, shifts })
             })
             .collect();
         let lock_margin = judged.lock_margin.is_finite().then_some(judged.lock_margin);
@@ -341,6 +382,7 @@ impl Design {
             member_speed: judged.member_speed,
             element_torque: judged.element_torque,
             certified: all_unique,
+            operations: Named::default(),
         }
     }
 
@@ -391,4 +433,26 @@ impl Design {
         }
         document.to_string()
     }
+}
+
+/// A number in six digits or fewer.
+fn short(x: &willis::exact::Rational) -> String {
+    let x = x.to_f64();
+    let decimals = (5 - x.abs().max(1e-9).log10().floor() as i32).clamp(0, 12) as usize;
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// What a train does in these operations.
+pub(crate) fn operations(train: &willis::Train, names: &[String]) -> Named<OperationRow> {
+    let Ok(analysis) = analyze(train, &Selection::default()) else { return Named::default() };
+    let row = |o: willis::analysis::OperationReport| {
+        let only = match &o.solutions[..] {
+            [one] if o.verdict == Verdict::Unique => Some(one),
+            _ => None,
+        };
+        let efficiency = only.and_then(|s| s.efficiency);
+        (o.name, OperationRow { verdict: o.verdict, efficiency, loss_w: only.map(|s| s.loss_w) })
+    };
+    analysis.operations.into_iter().filter(|o| names.contains(&o.name)).map(row).collect()
 }

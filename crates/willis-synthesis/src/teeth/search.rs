@@ -1,6 +1,6 @@
 //! The search: every tooth number of a design file, counted and judged.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::work::{Effort, Work};
 
 use super::answer::Stage;
-use super::document::Design;
+use super::document::{Design, DesignedSet};
 use super::front::Front;
 use super::layout::SetKind;
 use super::lines::{self, Bounds};
@@ -105,6 +105,30 @@ struct Part {
 
 /// Walks through some steps of the outermost loop.
 type Steps<'s> = dyn Fn(std::ops::Range<usize>, &mut dyn Receive) + Sync + 's;
+
+/// A number with the total order of floating point.
+#[derive(Clone, Copy, Debug)]
+struct Order(f64);
+
+impl PartialEq for Order {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Order {}
+
+impl PartialOrd for Order {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Order {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
 
 /// Receives what the loops find.
 trait Receive {
@@ -226,6 +250,68 @@ impl Design {
         whole
     }
 
+    /// The best of all trains that satisfy the wish, whether others beat them or not: so many, by one objective, ties by the
+    /// fewest teeth. None where the work was cancelled before all of them were seen.
+    pub(crate) fn best(&self, sort: Objective, most: usize, work: &dyn Work) -> Option<Vec<Teeth>> {
+        struct Kept<'d> {
+            design: &'d Design,
+            needs: Needs,
+            sort: Objective,
+            most: usize,
+            // The worst is the last.
+            rows: BTreeSet<(Order, Teeth)>,
+        }
+        impl Kept<'_> {
+            fn take(&mut self, teeth: Teeth) {
+                let Some(judged) = self.design.judge(&teeth, self.needs) else { return };
+                if !self.design.meets(&judged).all(|m| m) {
+                    return;
+                }
+                let value = self.design.value(self.sort, &judged, &teeth);
+                self.rows.insert((Order(if self.sort.is_better_high() { -value } else { value }), teeth));
+                if self.rows.len() > self.most {
+                    self.rows.pop_last();
+                }
+            }
+            fn choose(&mut self, lists: &[Vec<&Item>], teeth: &mut Teeth) {
+                let Some((first, rest)) = lists.split_first() else { return self.take(teeth.clone()) };
+                for item in first {
+                    teeth.push(item.teeth.clone());
+                    self.choose(rest, teeth);
+                    teeth.pop();
+                }
+            }
+        }
+        impl Receive for Kept<'_> {
+            fn single(&mut self, item: &Item) {
+                if item.is_admissible() {
+                    self.take(vec![item.teeth.clone()]);
+                }
+            }
+            fn coupled(&mut self, groups: &[&Group]) {
+                let lists: Vec<Vec<&Item>> =
+                    groups.iter().map(|g| g.items.iter().filter(|i| i.is_admissible()).collect()).collect();
+                self.choose(&lists, &mut vec![]);
+            }
+        }
+        let asked = Self { objectives: vec![sort], ..self.clone() };
+        let needs = asked.needs();
+        let mut kept = Kept { design: self, needs, sort, most, rows: BTreeSet::new() };
+        let mut whole = true;
+        self.walk(false, &mut |outer, walk| {
+            work.begin("steps", outer as u64);
+            for step in 0..outer {
+                if work.cancelled() {
+                    whole = false;
+                    return;
+                }
+                walk(step..step + 1, &mut kept);
+                work.advance(1);
+            }
+        });
+        whole.then(|| kept.rows.into_iter().map(|(_, teeth)| teeth).collect())
+    }
+
     /// The spaces of the sets, in order; sets with the same space share it.
     fn units(&self, every_stage: bool) -> Vec<Unit<'_>> {
         let mut units: Vec<Unit<'_>> = vec![];
@@ -312,6 +398,12 @@ impl Design {
         if self.limits.ring_diameter.is_some() {
             all.push("ring_diameter".into());
         }
+        all.extend(self.conditions_of_motion());
+        all
+    }
+
+    /// Names of the conditions beyond teeth, in their order.
+    pub(crate) fn conditions_of_motion(&self) -> Vec<String> {
         let later = [
             ("planet_spin", self.limits.planet_spin),
             ("member_speed", self.limits.member_speed),
@@ -320,12 +412,11 @@ impl Design {
             ("backward", self.require.backward),
             ("lock_margin", self.require.lock_margin),
         ];
-        all.extend(later.into_iter().filter(|l| l.1.is_some()).map(|l| l.0.to_owned()));
-        all
+        later.into_iter().filter(|l| l.1.is_some()).map(|l| l.0.to_owned()).collect()
     }
 
     /// Which conditions beyond teeth are met, in the order of [`Design::conditions`].
-    fn meets(&self, j: &Judged) -> impl Iterator<Item = bool> {
+    pub(crate) fn meets(&self, j: &Judged) -> impl Iterator<Item = bool> {
         let most = |limit: Option<f64>, value: f64| limit.map(|l| value <= l);
         let least = |limit: Option<f64>, value: f64| limit.map(|l| value >= l);
         [
@@ -352,11 +443,6 @@ impl Design {
             let [sun, planet, _] = seeds(s.space.kind);
             let own =
                 size(&s.space.gears[sun]) * self.planets_between(&s.space, planet) * s.space.mismatch.len() as f64;
-            let second = match s.space.kind {
-                SetKind::Simple => 1.0,
-                SetKind::Wolfrom => self.planets_between(&s.space, 3) * s.space.mismatch.len() as f64,
-                SetKind::Ravigneaux => size(&s.space.gears[0]),
-            };
             if own > 3e7 {
                 let message =
                     format!("set `{}` has {own:.0} choices of its first gears; 30 million are the most", s.name);
@@ -365,15 +451,22 @@ impl Design {
                     .into());
             }
             lists += own;
-            product *= own * second;
+            product *= s.space.size();
         }
-        // Windows leave a small share of each loop but the outermost.
+        // A window leaves of a loop about the share that it is of a doubling of the ratio; the outermost stays whole.
+        let wide = |(_, t): &(usize, super::wish::Target)| {
+            let width = |[a, b]: &[willis::exact::Rational; 2]| {
+                let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
+                2.0 * (a - b).abs() / (a + b).max(1e-300)
+            };
+            t.ratio.windows.iter().map(width).sum::<f64>().clamp(1e-3, 1.0)
+        };
+        let mut shares: Vec<f64> = self.targets.iter().map(wide).collect();
+        shares.sort_by(f64::total_cmp);
+        shares.truncate(self.layout.variables);
         let nodes = match self.way() {
             Walked::Lines(..) => lists * self.targets[0].1.ratio.windows.len() as f64,
-            Walked::Nest => {
-                let bounded = self.targets.len().min(self.layout.variables) as i32;
-                lists + product * 0.02_f64.powi(bounded)
-            }
+            Walked::Nest => lists + product * shares.iter().product::<f64>(),
         };
         Ok(Effort::new("candidates", product.min(1.8e19) as u64, 3e-7 * nodes / product.max(1.0)))
     }
@@ -449,13 +542,31 @@ impl Design {
         Ok(progress)
     }
 
-    /// Refuses the progress of another design.
+    /// Refuses the progress of another design, and one that no search has written.
     pub(crate) fn owns(&self, progress: &Progress) -> Result<(), Diagnostics> {
-        if progress.design == self.text || *progress == Progress::default() {
+        if *progress == Progress::default() {
             return Ok(());
         }
-        let message = "the progress of a search for another design cannot be used for this one";
-        Err(Diagnostic::new(Code::Unfit, "", message).hint("give the design file with which it was begun").into())
+        let refused = |message: &str, hint: &str| Err(Diagnostic::new(Code::Unfit, "", message).hint(hint).into());
+        if progress.design != self.text {
+            let message = "the progress of a search for another design cannot be used for this one";
+            return refused(message, "give the design file with which it was begun");
+        }
+        let are_teeth = |teeth: &Teeth| {
+            let fits = |(z, s): (&Vec<i64>, &DesignedSet)| {
+                z.len() == s.space.kind.gears().len() && z.iter().all(|z| (1..=MOST_TEETH).contains(z))
+            };
+            teeth.len() == self.sets.len() && teeth.iter().zip(&self.sets).all(fits)
+        };
+        let conditions = self.conditions();
+        let is_own = progress.done.iter().all(|d| d[0] < d[1] && d[1] <= progress.of)
+            && progress.done.windows(2).all(|w| w[0][1] <= w[1][0])
+            && progress.waterfall.iter().map(|s| &s.condition).eq(&conditions)
+            && progress.front.iter().all(are_teeth);
+        if is_own {
+            return Ok(());
+        }
+        refused("this progress was not written by a search for this design", "begin the search anew")
     }
 
     /// Two parts of one search as one.
@@ -465,6 +576,9 @@ impl Design {
     pub fn merge(&self, a: Progress, b: Progress) -> Result<Progress, Diagnostics> {
         self.owns(&a)?;
         self.owns(&b)?;
+        if a == Progress::default() {
+            return Ok(b);
+        }
         let overlap = a.done.iter().any(|x| b.done.iter().any(|y| x[0] < y[1] && y[0] < x[1]));
         if a.of != b.of || overlap || a.waterfall.len() != b.waterfall.len() {
             let message =
@@ -592,9 +706,16 @@ impl Design {
     /// The largest ring: reference diameter in metres, or in modules where none is given.
     pub(crate) fn ring(&self, teeth: &Teeth) -> f64 {
         let of = |(s, z): (&super::document::DesignedSet, &Vec<i64>)| {
-            s.space.ring(z) as f64 * if self.metric { s.module.unwrap_or(1.0) } else { 1.0 }
+            let teeth = s.space.ring(z);
+            teeth as f64 * self.module(s, teeth).unwrap_or(1.0)
         };
         self.sets.iter().zip(teeth).map(of).fold(0.0, f64::max)
+    }
+
+    /// The module that a set with such a ring has, m; none where diameters are in modules.
+    pub(crate) fn module(&self, set: &DesignedSet, ring: i64) -> Option<f64> {
+        let small = self.objectives.contains(&Objective::RingDiameter);
+        set.module(ring, self.limits.ring_diameter, small).filter(|_| self.metric)
     }
 
     /// The value of an objective.
