@@ -31,7 +31,21 @@ fn requests_without_train(entry: &Entry) -> Vec<Value> {
     match entry.name {
         "laws" => vec![json!({}), json!({ "oils": true }), json!({ "bearings": true })],
         "validate" => vec![json!({}), json!({ "case": "losses" })],
-        "explain" => vec![json!({}), json!({ "code": "E101" })],
+        "explain" => vec![json!({}), json!({ "code": "E101" }), json!({ "code": "hunting" })],
+        "design" => {
+            let file = |name: &str| {
+                let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+                json!({ "name": name, "text": fs::read_to_string(folder.join(name)).unwrap() })
+            };
+            vec![
+                json!({ "kind": "3k", "ratio": "100", "ring": "90 mm" }),
+                json!({ "kind": "simple", "ratio": "4.2", "all": true, "sort": "planet_spin", "top": 3 }),
+                json!({ "kind": "two-stage", "ratio": "20..20.1", "shard": "2/3" }),
+                json!({ "kind": "3k", "ratio": "100", "ring": "20 mm", "module": ["0.5 mm"], "forward": "0.8" }),
+                json!({ "like": file("simpson-ford-c4.toml") }),
+                json!({ "like": file("fva-planetary-stage.toml"), "tolerance": "0.02" }),
+            ]
+        }
         _ => vec![json!({})],
     }
 }
@@ -281,10 +295,15 @@ fn fields_that_exclude_each_other_are_refused() {
         ("regimes", json!({ "family": true, "balance": ["a", "b"] })),
         ("export", json!({ "kind": "csv", "state": "1", "all_states": true })),
         ("draw", json!({ "scale": 100.0 })),
+        ("design", json!({ "kind": "3k", "ratio": "100", "file": { "name": "x" } })),
+        ("design", json!({ "kind": "3k", "ratio": "100", "all": true, "shard": "1/2" })),
+        ("design", json!({ "kind": "3k" })),
+        ("design", json!({ "ring": "90 mm" })),
     ] {
         let given = examples.iter().find(|g| !g.model.train().scenarios().is_empty()).unwrap();
         let request = willis_ask::question(name).unwrap().request(fields.clone()).unwrap();
-        let refused = request.ask(std::slice::from_ref(given), &Serial).err();
+        let of: &[Given] = if request.question().of == Of::Nothing { &[] } else { std::slice::from_ref(given) };
+        let refused = request.ask(of, &Serial).err();
         assert!(matches!(refused, Some(Refusal::Wrong(_, 0))), "{name} {fields}: {refused:?}");
     }
 }

@@ -11,12 +11,12 @@ use super::names;
 use super::names::Known;
 use crate::{Given, Of, Question, Refusal};
 
-/// Explain a diagnostic code, or list all of them.
+/// Explain a diagnostic code or a rule for teeth, or list all of them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Explain {
-    /// The code, such as E106.
+    /// The code, such as E106, or a rule of `design`, such as hunting.
     #[cfg_attr(feature = "clap", arg(value_parser = Known(names::codes), hide_possible_values = true))]
     #[schemars(extend("enum" = names::or_none(names::codes())))]
     pub code: Option<String>,
@@ -30,10 +30,33 @@ pub struct ExplainAnswer {
     pub format: Format<Self>,
     /// The code that was asked for, or all.
     pub codes: Vec<Explained>,
+    /// The rule for teeth that was asked for, or all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rules: Vec<ExplainedRule>,
 }
 
 impl Contract for ExplainAnswer {
     const FORMAT: &'static str = "willis-codes-1";
+}
+
+/// A rule that tooth numbers may have to follow.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct ExplainedRule {
+    /// Its name in a design file.
+    pub name: String,
+    /// What it demands, by which formula, and why.
+    pub explanation: String,
+}
+
+/// The rules there are.
+fn rules() -> Vec<ExplainedRule> {
+    #[cfg(feature = "synthesis")]
+    let all = willis_synthesis::teeth::Rule::ALL.iter();
+    #[cfg(feature = "synthesis")]
+    return all.map(|r| ExplainedRule { name: r.name().into(), explanation: r.explanation().into() }).collect();
+    #[cfg(not(feature = "synthesis"))]
+    vec![]
 }
 
 /// A diagnostic code.
@@ -56,13 +79,21 @@ impl Question for Explain {
     type Answer = ExplainAnswer;
 
     fn ask(&self, _: &[Given], _: &dyn Work) -> Result<ExplainAnswer, Refusal> {
+        let mut rules = rules();
         let codes = match &self.code {
             None => Code::ALL.to_vec(),
             Some(text) => match Code::parse(text) {
-                Some(code) => vec![code],
+                Some(code) => {
+                    rules.clear();
+                    vec![code]
+                }
+                None if rules.iter().any(|r| r.name == *text) => {
+                    rules.retain(|r| r.name == *text);
+                    vec![]
+                }
                 None => {
-                    let known = Code::ALL.iter().map(|c| c.as_str());
-                    let message = format!("there is no diagnostic `{text}`");
+                    let known = Code::ALL.iter().map(|c| c.as_str()).chain(rules.iter().map(|r| r.name.as_str()));
+                    let message = format!("there is no diagnostic and no rule `{text}`");
                     return Err(Diagnostic::new(Code::UnknownSelection, "", message)
                         .suggest(text, known)
                         .hint("`willis explain` lists all of them")
@@ -76,13 +107,25 @@ impl Question for Explain {
             title: code.title().to_owned(),
             explanation: code.explanation().lines().map(str::trim_start).collect::<Vec<_>>().join("\n").trim().into(),
         };
-        Ok(ExplainAnswer { format: Format::new(), codes: codes.into_iter().map(explained).collect() })
+        Ok(ExplainAnswer { format: Format::new(), codes: codes.into_iter().map(explained).collect(), rules })
     }
 
     fn text(&self, answer: &ExplainAnswer, _: &[Given]) -> String {
         match (&self.code, answer.codes.as_slice()) {
             (Some(_), [one]) => format!("{}: {}\n\n{}\n", one.code, one.title, one.explanation),
-            (_, all) => all.iter().map(|c| format!("{}  {}\n", c.code, c.title)).collect(),
+            (Some(_), []) => {
+                let rule =
+                    |r: &ExplainedRule| format!("{}\n", crate::style::wrap(&r.explanation, &format!("{}: ", r.name)));
+                answer.rules.iter().map(rule).collect()
+            }
+            (_, all) => {
+                let codes = all.iter().map(|c| format!("{}  {}\n", c.code, c.title));
+                let rules = answer.rules.iter().map(|r| {
+                    let first = r.explanation.split_inclusive(['.', ':']).next().unwrap_or_default();
+                    format!("{:<12}  {}\n", r.name, first.trim_end_matches([':', '.']))
+                });
+                codes.chain(rules).collect()
+            }
         }
     }
 }

@@ -27,9 +27,12 @@ pub fn families() -> Vec<&'static str> {
     willis::losses::FAMILIES.to_vec()
 }
 
-/// Codes of diagnostics.
+/// Codes of diagnostics, and rules for teeth.
 pub fn codes() -> Vec<&'static str> {
-    willis::diagnostic::Code::ALL.iter().map(|c| c.as_str()).collect()
+    let codes = willis::diagnostic::Code::ALL.iter().map(|c| c.as_str());
+    #[cfg(feature = "synthesis")]
+    let codes = codes.chain(willis_synthesis::teeth::Rule::ALL.iter().map(|r| r.name()));
+    codes.collect()
 }
 
 /// The same names, or nothing: what the schema of a field that may be left out allows.

@@ -49,6 +49,8 @@ pub(crate) struct DesignedSet {
     pub modules: Vec<f64>,
     /// Whether the set has a table `geometry`, so that profile shifts can be written.
     pub has_geometry: bool,
+    /// Whether the efficiencies of its meshes are given.
+    pub has_losses: bool,
 }
 
 impl DesignedSet {
@@ -705,6 +707,7 @@ impl Design {
                 space,
                 modules: own_module.map_or_else(|| modules.to_vec(), |m| vec![m]),
                 has_geometry: geometry.is_some(),
+                has_losses: set.get("mesh_efficiency").is_some(),
             });
         }
         found
@@ -899,6 +902,16 @@ pub(crate) fn substitute(
             put("rings.0.planet.shift", x[1].into());
         }
     }
+}
+
+/// The face width of a train file whose designer gave none, in modules: a usual one.
+pub(crate) const WIDTH_IN_MODULES: i64 = 10;
+
+/// Gives a set without a geometry its module and a face width.
+pub(crate) fn give_geometry(document: &mut DocumentMut, set: &DesignedSet, module: f64) {
+    let length = |x: f64| format!("{} mm", (x * 1e9).round() / 1e6);
+    write(document, set.index, "geometry.module", length(module).into());
+    write(document, set.index, "geometry.width", length(module * WIDTH_IN_MODULES as f64).into());
 }
 
 /// Sets a value at a path within a set, with the tables on the way.

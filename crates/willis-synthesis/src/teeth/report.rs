@@ -8,7 +8,7 @@ use willis::named::Named;
 use willis::work::Work;
 
 use super::answer::{Completeness, DesignAnswer, DesignRow, OperationRow, SetRange, SetRow, Space, StateRow};
-use super::document::{Design, nth, substitute, tables};
+use super::document::{Design, WIDTH_IN_MODULES, give_geometry, nth, substitute, tables};
 use super::fit::Phase;
 use super::search::{Judged, Needs, Progress, Teeth};
 use super::wish::Objective;
@@ -402,6 +402,7 @@ impl Design {
 
     fn text_of(&self, teeth: &Teeth, row: Option<&DesignRow>) -> String {
         let mut document = self.template.clone();
+        let mut assumed = false;
         for (s, z) in self.sets.iter().zip(teeth) {
             let own = row.and_then(|r| r.sets.get(&s.name));
             let item = s.space.item(z.clone());
@@ -417,7 +418,13 @@ impl Design {
                 None if s.has_geometry => s.shifts(z, short),
                 None => None,
             };
-            let shifts = shifts.filter(|_| s.has_geometry);
+            // Teeth whose losses are given may have a geometry: it changes none of them.
+            let module = own.and_then(|o| o.module_m).filter(|_| shifts.is_some() && !s.has_geometry && s.has_losses);
+            if let Some(module) = module {
+                give_geometry(&mut document, s, module);
+                assumed = true;
+            }
+            let shifts = shifts.filter(|_| s.has_geometry || module.is_some());
             substitute(&mut document, s, z, planets, short, shifts.as_deref());
         }
         if let Some(row) = row {
@@ -428,7 +435,10 @@ impl Design {
                 .collect();
             document["name"] = toml_edit::value(format!("{}, {}", self.name, title.join(" ")));
             let before = document.get("notes").and_then(toml_edit::Item::as_str).unwrap_or("").trim().to_owned();
-            let notes = format!("{before}\nTooth numbers found for this wish: {}.", self.wish());
+            let mut notes = format!("{before}\nTooth numbers found for this wish: {}.", self.wish());
+            if assumed {
+                notes += &format!(" Teeth are {WIDTH_IN_MODULES} modules wide, which is assumed.");
+            }
             document["notes"] = toml_edit::value(notes.trim());
         }
         document.to_string()

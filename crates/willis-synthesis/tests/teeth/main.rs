@@ -3,3 +3,4 @@
 mod counts;
 mod files;
 mod layouts;
+mod own;

@@ -121,7 +121,8 @@ impl Expansion<'_, '_> {
         let Some((first, rest)) = steps.split_first() else { return };
         // Twice the centre distance in modules: |z + y| for sun (z > 0) and ring (z < 0).
         let twice = |(z, y): &(i64, Rational)| (&Rational::from(*z) + y).abs();
-        for other in rest {
+        // Where the teeth are given their centre distances are compared instead.
+        for other in rest.iter().filter(|_| self.set.geometry.is_none()) {
             let off = (&twice(first) - &twice(other)).abs();
             if !off.is_zero() {
                 let message = format!(

@@ -137,6 +137,10 @@ impl Reader<'_> {
                     let mut d = Diagnostic::new(Code::UnknownKey, place, message);
                     let keys = table.keys().map(|k| k.name);
                     match synonyms::meant(name, keys.clone()) {
+                        // Many trains: no single one can be read.
+                        None if path.is_empty() && name == "design" => {
+                            d = d.hint("with it this is a design file, which the question `design` answers");
+                        }
                         Some((key, more)) => {
                             let with = if more.is_empty() { String::new() } else { format!(", with {more}") };
                             d = d.hint(format!("it is called `{key}` here{with}"));

@@ -1,0 +1,129 @@
+//! The question `design`: parts of a search are the whole, rows are trains, what is wrong is said.
+
+use serde_json::{Value, json};
+use willis::work::{Serial, Work};
+use willis_ask::{Answer, Entry, Given, Refusal, Request};
+
+fn design() -> &'static Entry {
+    willis_ask::question("design").unwrap()
+}
+
+fn robot() -> Value {
+    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../willis-synthesis/examples/robot.toml"));
+    json!({ "name": "robot.toml", "text": text })
+}
+
+fn answer(request: Value) -> Box<dyn Answer + Send + Sync> {
+    let request = design().request(request).unwrap();
+    request.ask_for_good(std::sync::Arc::new([]), &Serial).unwrap()
+}
+
+fn refused(request: Value) -> Refusal {
+    let request = design().request(request).unwrap();
+    request.ask(&[], &Serial).err().unwrap_or_else(|| panic!("{} was answered", request.to_json()))
+}
+
+fn progress(request: Value) -> String {
+    String::from_utf8(answer(request).extra("progress").unwrap().remove(0).bytes).unwrap()
+}
+
+#[test]
+fn parts_are_the_whole_bit_for_bit() {
+    let whole = answer(json!({ "file": robot() })).json();
+    let part = |k: &str| json!({ "name": k, "text": progress(json!({ "file": robot(), "shard": k })) });
+    let parts = ["2/3", "1/3", "3/3"].map(part);
+    assert_eq!(answer(json!({ "file": robot(), "resume": parts })).json(), whole);
+    // What is missing is searched.
+    assert_eq!(answer(json!({ "file": robot(), "resume": [part("3/5")] })).json(), whole);
+    // Pieces of other machines.
+    let request: Box<dyn Request> = design().request(json!({ "file": robot() })).unwrap();
+    let pieces: Vec<Vec<u8>> = (0..4).map(|k| request.piece(&[], k, 4, &Serial).unwrap()).collect();
+    let of: std::sync::Arc<[Given]> = std::sync::Arc::new([]);
+    assert_eq!(request.gather(of.clone(), &pieces).unwrap().json(), whole);
+    assert!(request.gather(of, &[pieces[0].clone(), pieces[0].clone()]).is_err());
+}
+
+#[test]
+fn rows_are_written_as_trains() {
+    let two = answer(json!({ "file": robot(), "write": [1, 3] })).write("train").unwrap();
+    assert_eq!(two.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["design-1.toml", "design-3.toml"]);
+    for file in two {
+        let given = Given::read(&file.name, std::str::from_utf8(&file.bytes).unwrap()).unwrap();
+        let request = willis_ask::question("analyze").unwrap().request(json!({})).unwrap();
+        assert!(request.ask(&[given], &Serial).unwrap().text().contains("sun → ring"));
+    }
+    // More rows than are shown by default.
+    let many = json!({ "kind": "3k", "ratio": "90..110", "all": true, "write": [40] });
+    assert_eq!(answer(many).write("train").unwrap()[0].name, "design-40.toml");
+    // The design file that options stand for is one.
+    let start = answer(json!({ "kind": "3k", "ratio": "100" }));
+    let file = start.write("design-file").unwrap().remove(0);
+    let again = json!({ "file": { "name": "d", "text": String::from_utf8(file.bytes).unwrap() } });
+    assert_eq!(answer(again).json(), start.json());
+}
+
+#[test]
+fn what_was_stopped_says_how_far_it_came() {
+    struct Stops;
+    impl Work for Stops {
+        fn cancelled(&self) -> bool {
+            true
+        }
+        fn run(&self, _: usize, _: &(dyn Fn(usize) + Sync)) {}
+    }
+    let request = design().request(json!({ "file": robot() })).unwrap();
+    let answer = request.ask(&[], &Stops).unwrap();
+    assert!(answer.is_partial() && answer.text().contains("0.0 % of the space is done"), "{}", answer.text());
+}
+
+#[test]
+fn an_empty_answer_says_what_must_give() {
+    let text = answer(json!({ "kind": "3k", "ratio": "100", "ring": "20mm", "module": ["0.5mm"] })).text();
+    assert!(text.contains("must give: ") && text.contains("0 sets of tooth numbers satisfy"), "{text}");
+    assert!(
+        answer(json!({ "kind": "3k", "ratio": "100", "ring": "20mm", "module": ["0.5mm"] })).extra("plot").is_err()
+    );
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let file = |text: &str| json!({ "file": { "name": "mine.toml", "text": text } });
+    let robot_with = |a: &str, b: &str| {
+        let text = robot()["text"].as_str().unwrap().replace(a, b);
+        json!({ "file": { "name": "mine.toml", "text": text } })
+    };
+    let resumed = |text: &str| json!({ "file": robot(), "resume": [{ "name": "p.json", "text": text }] });
+    let good = progress(json!({ "file": robot(), "shard": "1/2" }));
+    for (request, says) in [
+        (json!({}), "nothing says what is to be designed"),
+        (json!({ "kind": "4k", "ratio": "3" }), "there is no kind of drive `4k`"),
+        (json!({ "kind": "3k", "ratio": "100", "ring": "90" }), "the unit is missing"),
+        (json!({ "kind": "3k", "ratio": "100", "planets": "none" }), "design.planets"),
+        (json!({ "kind": "3k", "ratio": "100", "backward": "1.2" }), "no efficiency is above 1"),
+        (json!({ "kind": "3k", "ratio": "100", "module": ["-1 mm"] }), "must be above 0"),
+        (json!({ "file": robot(), "sort": "cheapest" }), "nothing that a design is judged by"),
+        (json!({ "file": robot(), "shard": "0/3" }), "no part of a search"),
+        (json!({ "file": robot(), "write": [0] }), "counted from 1"),
+        (file(""), "no ratio is asked for"),
+        (file("[design"), "mine.toml"),
+        (robot_with("\"12..60\"", "\"60..12\""), "60..12"),
+        (robot_with("\"..120\"", "\"..12000000000\""), "12000000000"),
+        (robot_with("ratio = [99, 101]", "ratio = [101, 99]"), "the window from 101 to 99 is empty"),
+        (robot_with("\"hunting\"", "\"huntin\""), "there is no rule `huntin`"),
+        (robot_with("any_sign", "state = \"9\", any_sign"), "no state `9`"),
+        (robot_with("0.8 mm", "0.8"), "the unit is missing"),
+        (resumed("{}"), "is not the progress of a search"),
+        (resumed("[1, 2"), "is not the progress of a search"),
+        (resumed(&good.replace("P1", "P2")), "another design"),
+        (resumed(&good.replacen("[[", "[[-1,", 1)), "progress"),
+        (resumed(&good.replacen("\"front\":[[[", "\"front\":[[[9,", 1)), "was not written by a search"),
+        (json!({ "like": { "name": "l", "text": "x" } }), "l"),
+        (json!({ "file": robot(), "like": { "name": "l", "text": "format = 1" } }), "members"),
+    ] {
+        let refusal = refused(request.clone());
+        let text = refusal.render(&[], false);
+        assert!(text.contains(says), "{request}: {text}");
+    }
+    let rows = answer(json!({ "file": robot(), "write": [9] })).write("train").unwrap_err();
+    assert!(rows.to_string().contains("there is no row 9"));
+}
