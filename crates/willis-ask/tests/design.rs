@@ -9,8 +9,8 @@ fn design() -> &'static Entry {
 }
 
 fn robot() -> Value {
-    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../willis-synthesis/examples/robot.toml"));
-    json!({ "name": "robot.toml", "text": text })
+    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/design/joint.toml"));
+    json!({ "name": "joint.toml", "text": text })
 }
 
 fn answer(request: Value) -> Box<dyn Answer + Send + Sync> {

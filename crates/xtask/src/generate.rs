@@ -121,6 +121,10 @@ const FIGURES: &[(&str, &[&str])] = &[
         &["draw", "losses", "examples/wang-herringbone-physical.toml", "--theme", "auto", "-o"],
     ),
     (
+        "book/src/figures/actuator.svg",
+        &["design", "--kind", "3k", "--ratio", "100", "--ring", "90mm", "--module", "0.8mm", "--plot"],
+    ),
+    (
         "book/src/figures/heat-industrial.svg",
         &["draw", "heat", "examples/industrial-planetary-heat.toml", "--operation", "rated", "--theme", "auto", "-o"],
     ),

@@ -193,18 +193,20 @@ impl Design {
                 format!("{name}: {}; planets {}; mismatch {}", teeth.join(", "), list(&r.planets), list(&r.mismatch))
             })
             .collect();
-        let many = |n: f64| if n < 1e15 { format!("{n:.0}") } else { format!("{n:.2e}") };
+        let many = |n: f64| if n < 1e15 { grouped(n as u64) } else { format!("{n:.2e}") };
+        let sets_left = match left {
+            1 => "1 set of tooth numbers satisfies".to_owned(),
+            n => format!("{} sets of tooth numbers satisfy", grouped(n)),
+        };
         let what = format!("{}. {} candidates", sets.join(". "), many(space.candidates));
         if complete {
             format!(
-                "{what}, all examined or excluded by bounds with a margin for rounding; {left} sets of tooth numbers \
-                 satisfy the wish; nothing else exists in this space."
+                "{what}, all examined or excluded by bounds with a margin for rounding; {sets_left} the wish; nothing else \
+                 exists in this space."
             )
         } else {
             let share = if of == 0 { 0.0 } else { 100.0 * done as f64 / of as f64 };
-            format!(
-                "{what}; {share:.1} % of the space is done; {left} sets of tooth numbers so far. There may be more."
-            )
+            format!("{what}; {share:.1} % of the space is done; {sets_left} the wish so far. There may be more.")
         }
     }
 
@@ -443,6 +445,13 @@ impl Design {
         }
         document.to_string()
     }
+}
+
+/// A count with its digits in groups of three.
+fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev().map(|c| String::from_utf8_lossy(c).into_owned());
+    groups.collect::<Vec<_>>().join("\u{a0}")
 }
 
 /// A number in six digits or fewer.
