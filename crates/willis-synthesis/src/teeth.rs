@@ -49,4 +49,4 @@ pub use rule::Rule;
 pub use search::{Found, Progress};
 pub use space::{Item, SetSpace};
 pub use start::{Start, StartKind};
-pub use wish::{Limits, Objective, Ratio, Requirements, Target};
+pub use wish::{Limits, Objective, Ratio, Requirements, Step, Target};

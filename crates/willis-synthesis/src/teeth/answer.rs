@@ -209,8 +209,8 @@ pub struct StateRow {
     pub ratio: Option<Rational>,
     /// The same as a decimal.
     pub value: f64,
-    /// What was aimed at.
-    pub target: Rational,
+    /// What was aimed at; absent where the ratio may be anything.
+    pub target: Option<Rational>,
     /// Relative deviation.
     pub error: f64,
     /// Efficiency from input to output, where it is unique.

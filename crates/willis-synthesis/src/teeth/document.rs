@@ -16,6 +16,7 @@
 //! [[design.target]]
 //! state = "1"                            # not needed where the train has no states
 //! ratio = 4.70                           # or [4.6, 4.8]; `any_sign = true` takes both signs
+//! step = [1.4, 1.6]                      # over the ratio of the next state; with a ratio or without
 //! tolerance = 0.02
 //! ```
 //!
@@ -36,7 +37,7 @@ use super::range::Counts;
 use super::rule::Rule;
 use super::shift::Rack;
 use super::space::SetSpace;
-use super::wish::{Limits, Objective, Ratio, Requirements, Target};
+use super::wish::{Limits, Objective, Ratio, Requirements, Step, Target};
 
 /// A set of a design file.
 #[derive(Clone, Debug)]
@@ -103,6 +104,8 @@ pub struct Design {
     pub(crate) layout: Layout,
     /// With the number of the state in the layout.
     pub(crate) targets: Vec<(usize, Target)>,
+    /// With the positions of both states among the targets.
+    pub(crate) steps: Vec<([usize; 2], Step)>,
     pub(crate) limits: Limits,
     pub(crate) require: Requirements,
     /// What designs are judged by; the first one sorts rows.
@@ -129,6 +132,20 @@ const KEYS: [&str; 11] = [
 
 /// The largest difference, in teeth, from a set without profile shift.
 const MOST_MISMATCH: i64 = 4;
+
+/// What a target asks, before its state is looked for.
+struct Asked {
+    state: Option<String>,
+    ratio: Ratio,
+    step: Option<[Rational; 2]>,
+    span: Option<Range<usize>>,
+}
+
+/// A number to come near to, or two ends.
+enum Window {
+    Aim(Rational),
+    Ends([Rational; 2]),
+}
 
 /// Reads with places.
 struct Reader<'t> {
@@ -178,6 +195,22 @@ impl Reader<'_> {
             return None;
         }
         Some(value.to_f64())
+    }
+
+    /// A number, or a list of two, the smaller one first.
+    fn window(&mut self, place: &str, item: &Item) -> Option<Window> {
+        let Some(ends) = item.as_array() else { return self.rational(place, item).map(Window::Aim) };
+        let ends: Vec<Rational> = ends.iter().filter_map(|v| self.rational(place, &Item::Value(v.clone()))).collect();
+        match <[Rational; 2]>::try_from(ends) {
+            Ok([a, b]) if a <= b => return Some(Window::Ends([a, b])),
+            Ok([a, b]) => {
+                let message = format!("the window from {a} to {b} is empty");
+                let d = Diagnostic::new(Code::OutOfRange, "", message).hint("write the smaller number first");
+                self.report(d, place, item.span());
+            }
+            Err(_) => self.kind(place, item, "a number, or a list of two"),
+        }
+        None
     }
 
     fn counts(&mut self, place: &str, item: &Item) -> Option<Counts> {
@@ -537,13 +570,8 @@ impl Design {
         require
     }
 
-    fn target(
-        item: &Item,
-        place: &str,
-        tolerance: &Rational,
-        r: &mut Reader<'_>,
-    ) -> Option<(Option<String>, Ratio, Option<Range<usize>>)> {
-        const KEYS: [&str; 4] = ["state", "ratio", "tolerance", "any_sign"];
+    fn target(item: &Item, place: &str, tolerance: &Rational, r: &mut Reader<'_>) -> Option<Asked> {
+        const KEYS: [&str; 5] = ["state", "ratio", "step", "tolerance", "any_sign"];
         let Some(table) = item.as_table_like() else {
             r.kind(place, item, "a table");
             return None;
@@ -580,36 +608,42 @@ impl Design {
             r.report(d, place, table.get("tolerance").and_then(Item::span));
             return None;
         }
+        let step = match table.get("step") {
+            Some(item) => {
+                let at = format!("{place}.step");
+                let window = match r.window(&at, item)? {
+                    Window::Ends(ends) => ends,
+                    Window::Aim(aim) => {
+                        let off = &aim.abs() * &own;
+                        [&aim - &off, &aim + &off]
+                    }
+                };
+                if window[0].sign() <= 0 {
+                    let message = format!("a step of {} is not above 0", window[0]);
+                    r.report(Diagnostic::new(Code::OutOfRange, "", message), &at, item.span());
+                    return None;
+                }
+                Some(window)
+            }
+            None => None,
+        };
         let Some(ratio) = table.get("ratio") else {
-            r.report(Diagnostic::new(Code::MissingKey, "", "a target needs a `ratio`"), place, item.span());
+            if step.is_some() {
+                return Some(Asked { state, ratio: Ratio::any(), step, span: item.span() });
+            }
+            r.report(Diagnostic::new(Code::MissingKey, "", "a target needs a `ratio` or a `step`"), place, item.span());
             return None;
         };
         let at = format!("{place}.ratio");
-        let read = match ratio.as_array() {
-            Some(ends) => {
-                let ends: Vec<Rational> =
-                    ends.iter().filter_map(|v| r.rational(&at, &Item::Value(v.clone()))).collect();
-                match <[Rational; 2]>::try_from(ends) {
-                    Ok([a, b]) if a <= b => Ratio::within([a, b], any_sign),
-                    Ok([a, b]) => {
-                        let message = format!("the window from {a} to {b} is empty");
-                        let d = Diagnostic::new(Code::OutOfRange, "", message).hint("write the smaller number first");
-                        r.report(d, &at, ratio.span());
-                        return None;
-                    }
-                    Err(_) => {
-                        r.kind(&at, ratio, "a number, or a list of two");
-                        return None;
-                    }
-                }
-            }
-            None => Ratio::near(r.rational(&at, ratio)?, &own, any_sign),
+        let read = match r.window(&at, ratio)? {
+            Window::Ends(ends) => Ratio::within(ends, any_sign),
+            Window::Aim(aim) => Ratio::near(aim, &own, any_sign),
         };
         if read.aim.is_zero() && read.windows[0][0].is_zero() {
             r.report(Diagnostic::new(Code::OutOfRange, "", "no train has the ratio 0"), &at, ratio.span());
             return None;
         }
-        Some((state, read, ratio.span()))
+        Some(Asked { state, ratio: read, step, span: ratio.span() })
     }
 
     fn sets(
@@ -717,7 +751,7 @@ impl Design {
         root: &Item,
         r: &mut Reader<'_>,
         mut sets: Vec<DesignedSet>,
-        raw: Vec<(Option<String>, Ratio, Option<Range<usize>>)>,
+        raw: Vec<Asked>,
         (limits, require, objectives, rules): (Limits, Requirements, Vec<Objective>, Vec<Rule>),
     ) -> Result<Self, Diagnostics> {
         let metric = sets.iter().all(|s| !s.modules.is_empty());
@@ -797,7 +831,8 @@ impl Design {
         }
         let layout = Layout::new(model.train(), &kinds)?;
         let mut targets: Vec<(usize, Target)> = vec![];
-        for (k, (state, ratio, span)) in raw.into_iter().enumerate() {
+        let mut raw_steps = vec![];
+        for (k, Asked { state, ratio, step, span }) in raw.into_iter().enumerate() {
             let place = format!("design.target[{k}].state");
             let found = match &state {
                 Some(name) => layout.states.iter().position(|s| s.name == *name),
@@ -811,7 +846,12 @@ impl Design {
                     d.span = span.map(Into::into);
                     wrong.push(d);
                 }
-                Some(n) => targets.push((n, Target { state: layout.states[n].name.clone(), ratio })),
+                Some(n) => {
+                    if let Some(window) = step {
+                        raw_steps.push((k, n, window, span));
+                    }
+                    targets.push((n, Target { state: layout.states[n].name.clone(), ratio }));
+                }
                 None => {
                     let names = layout.states.iter().map(|s| s.name.as_str());
                     let unfit = layout.unfit.iter().find(|u| state.as_ref() == Some(&u.0));
@@ -830,10 +870,30 @@ impl Design {
                 }
             }
         }
+        let mut steps = vec![];
+        for (k, n, window, span) in raw_steps {
+            let Some(next) = layout.states.get(n + 1).map(|s| s.name.clone()) else {
+                let message = format!("no state follows `{}`, so that it has no step", layout.states[n].name);
+                let mut d = Diagnostic::new(Code::Conflict, format!("design.target[{k}].step"), message);
+                d.span = span.map(Into::into);
+                wrong.push(d.hint("a step is from a state to the next one of the file"));
+                continue;
+            };
+            let mut place = |state: usize| {
+                targets.iter().position(|t| t.0 == state).unwrap_or_else(|| {
+                    let name = layout.states[state].name.clone();
+                    targets.push((state, Target { state: name, ratio: Ratio::any() }));
+                    targets.len() - 1
+                })
+            };
+            let ends = [place(n), place(n + 1)];
+            steps.push((ends, Step { state: layout.states[n].name.clone(), next, window }));
+        }
         if !wrong.is_empty() {
             return Err(wrong);
         }
         Ok(Self {
+            steps,
             template,
             text: r.text.to_owned(),
             name,

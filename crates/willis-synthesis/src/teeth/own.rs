@@ -52,10 +52,13 @@ impl Design {
         let mut row = here.row(0, &teeth, &judged);
         row.operations = operations(model.train(), &self.operation_names());
         for (k, (state, target)) in self.targets.iter().enumerate() {
-            let inside = match row.states.get(&target.state).and_then(|s| s.ratio.as_ref()) {
-                Some(exact) => target.ratio.windows.iter().any(|[a, b]| a <= exact && exact <= b),
-                None => target.ratio.deviation(self.layout.states[*state].ratio.at(&self.variables(&teeth))) <= 1e-12,
-            };
+            let inside = target.ratio.is_any()
+                || match row.states.get(&target.state).and_then(|s| s.ratio.as_ref()) {
+                    Some(exact) => target.ratio.windows.iter().any(|[a, b]| a <= exact && exact <= b),
+                    None => {
+                        target.ratio.deviation(self.layout.states[*state].ratio.at(&self.variables(&teeth))) <= 1e-12
+                    }
+                };
             if !inside {
                 fails.insert(k.min(fails.len()), format!("ratio of state {}", target.state));
             }

@@ -51,9 +51,7 @@ impl Asker<'_> {
         let (state, own) = &mut open.targets[target];
         let state = *state;
         let aim = own.ratio.clone();
-        // Nothing excludes any ratio of this state.
-        let wide = Rational::from(1_000_000);
-        own.ratio.windows = vec![[-wide.clone(), wide]];
+        own.ratio = Ratio::any();
         if !self.may(&open) {
             return None;
         }
@@ -93,9 +91,11 @@ pub(crate) fn relaxations(design: &Design, work: &dyn Work) -> Vec<Relaxation> {
     }
     // One target after the other.
     if design.targets.len() > 1 {
-        for k in 0..design.targets.len() {
+        for k in (0..design.targets.len()).filter(|k| !design.targets[*k].1.ratio.is_any()) {
             let mut without = design.clone();
-            let (_, target) = without.targets.remove(k);
+            let target = without.targets[k].1.clone();
+            // Steps still need its state.
+            without.targets[k].1.ratio = Ratio::any();
             if let Some((trains, _)) = asker.best(&without, Objective::Error) {
                 let near = asker.nearest(design, k);
                 let mut words = format!("without the ratio of state {}, {} the rest", target.state, plural(trains));
@@ -110,6 +110,14 @@ pub(crate) fn relaxations(design: &Design, work: &dyn Work) -> Vec<Relaxation> {
                     words,
                 });
             }
+        }
+    }
+    if !design.steps.is_empty() {
+        let mut without = design.clone();
+        without.steps.clear();
+        if let Some((trains, _)) = asker.best(&without, Objective::Error) {
+            let words = format!("without the steps, {} the wish", plural(trains));
+            found.push(Relaxation { wish: "step".into(), now: None, needed: None, trains, words });
         }
     }
     for rule in &design.rules {
@@ -162,6 +170,9 @@ fn widen(design: &Design, wider: &mut Design, factor: &Rational) -> bool {
     let mut some = false;
     for ((_, t), (_, wide)) in design.targets.iter().zip(&mut wider.targets) {
         let (aim, windows) = (&t.ratio.aim, &t.ratio.windows);
+        if t.ratio.is_any() {
+            continue;
+        }
         let [low, high] = &windows[if aim.sign() >= 0 { windows.len() - 1 } else { 0 }];
         let half = &(high - low) / &Rational::from(2);
         let half = if half.is_zero() { &aim.abs() * &Rational::new(1, 1000) } else { half };

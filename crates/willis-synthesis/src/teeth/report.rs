@@ -164,9 +164,9 @@ impl Design {
                 bounds[self.layout.first[k]..][..s.space.kind.variables()].copy_from_slice(&s.space.bounds()?);
             }
         }
-        let all: Vec<usize> = (0..self.targets.len()).collect();
+        let all: Vec<usize> = (0..self.targets.len()).filter(|k| !self.targets[*k].1.ratio.is_any()).collect();
         let mut groups: Vec<Vec<usize>> = all.iter().map(|k| vec![*k]).collect();
-        groups.extend(all.iter().flat_map(|a| all[a + 1..].iter().map(|b| vec![*a, *b])));
+        groups.extend(all.iter().enumerate().flat_map(|(k, a)| all[k + 1..].iter().map(|b| vec![*a, *b])));
         groups.push(all.clone());
         let excluded = |group: &Vec<usize>| {
             let of = |k: &usize| (&self.layout.states[self.targets[*k].0].ratio, &self.targets[*k].1.ratio);
@@ -215,12 +215,17 @@ impl Design {
         let mut parts: Vec<String> = self
             .targets
             .iter()
+            .filter(|t| !t.1.ratio.is_any())
             .map(|(_, t)| {
                 let windows: Vec<String> =
                     t.ratio.windows.iter().map(|[a, b]| format!("{} to {}", short(a), short(b))).collect();
                 format!("state {}: ratio {}", t.state, windows.join(" or "))
             })
             .collect();
+        parts.extend(self.steps.iter().map(|(_, s)| {
+            let [a, b] = &s.window;
+            format!("step from {} to {}: {} to {}", s.state, s.next, short(a), short(b))
+        }));
         if !self.rules.is_empty() {
             parts.push(format!("rules: {}", self.rules.iter().map(|r| r.name()).collect::<Vec<_>>().join(", ")));
         }
@@ -327,7 +332,7 @@ impl Design {
                 let row = StateRow {
                     ratio: report.and_then(|r| r.exact.clone()),
                     value,
-                    target: target.ratio.aim.clone(),
+                    target: (!target.ratio.is_any()).then(|| target.ratio.aim.clone()),
                     error: target.ratio.deviation(value),
                     forward: drive.as_ref().and_then(|d| d.efficiency),
                     forward_exact: drive.as_ref().and_then(|d| d.efficiency_exact.clone()),

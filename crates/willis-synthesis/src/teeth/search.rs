@@ -67,6 +67,8 @@ impl Progress {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Judged {
     pub error: f64,
+    /// Whether all steps are met.
+    pub steps: bool,
     pub forward: f64,
     pub backward: f64,
     pub self_locking: bool,
@@ -330,7 +332,7 @@ impl Design {
             quotient: self.layout.states[*state].ratio.clone(),
             windows: t.ratio.windows.clone(),
         };
-        self.targets.iter().map(of).collect()
+        self.targets.iter().filter(|t| !t.1.ratio.is_any()).map(of).collect()
     }
 
     fn way(&self) -> Walked<'_> {
@@ -381,14 +383,14 @@ impl Design {
 
     /// Targets that no tooth numbers can change and that are not met.
     pub(crate) fn impossible(&self) -> Vec<usize> {
-        let all = self.nest_targets();
-        let constant = |t: &nest::Target| {
-            (0..self.layout.variables).all(|v| !t.quotient.depends_on(v)) && {
-                let ratio = willis::exact::Rational::new(t.quotient.numerator.0[0], t.quotient.denominator.0[0]);
-                !t.windows.iter().any(|[a, b]| *a <= ratio && ratio <= *b)
+        let misses = |(state, t): &(usize, super::wish::Target)| {
+            let q = &self.layout.states[*state].ratio;
+            !t.ratio.is_any() && (0..self.layout.variables).all(|v| !q.depends_on(v)) && {
+                let ratio = willis::exact::Rational::new(q.numerator.0[0], q.denominator.0[0]);
+                !t.ratio.windows.iter().any(|[a, b]| *a <= ratio && ratio <= *b)
             }
         };
-        (0..all.len()).filter(|k| constant(&all[*k])).collect()
+        (0..self.targets.len()).filter(|k| misses(&self.targets[*k])).collect()
     }
 
     /// Names of the conditions, in their order.
@@ -404,6 +406,7 @@ impl Design {
 
     /// Names of the conditions beyond teeth, in their order.
     pub(crate) fn conditions_of_motion(&self) -> Vec<String> {
+        let steps = (!self.steps.is_empty()).then(|| "step".to_owned());
         let later = [
             ("planet_spin", self.limits.planet_spin),
             ("member_speed", self.limits.member_speed),
@@ -412,7 +415,7 @@ impl Design {
             ("backward", self.require.backward),
             ("lock_margin", self.require.lock_margin),
         ];
-        later.into_iter().filter(|l| l.1.is_some()).map(|l| l.0.to_owned()).collect()
+        steps.into_iter().chain(later.into_iter().filter(|l| l.1.is_some()).map(|l| l.0.to_owned())).collect()
     }
 
     /// Which conditions beyond teeth are met, in the order of [`Design::conditions`].
@@ -420,6 +423,7 @@ impl Design {
         let most = |limit: Option<f64>, value: f64| limit.map(|l| value <= l);
         let least = |limit: Option<f64>, value: f64| limit.map(|l| value >= l);
         [
+            (!self.steps.is_empty()).then_some(j.steps),
             most(self.limits.planet_spin, j.planet_spin),
             most(self.limits.member_speed, j.member_speed),
             most(self.limits.element_torque, j.element_torque.unwrap_or(0.0)),
@@ -459,7 +463,7 @@ impl Design {
                 let (a, b) = (a.to_f64().abs(), b.to_f64().abs());
                 2.0 * (a - b).abs() / (a + b).max(1e-300)
             };
-            t.ratio.windows.iter().map(width).sum::<f64>().clamp(1e-3, 1.0)
+            if t.ratio.is_any() { 1.0 } else { t.ratio.windows.iter().map(width).sum::<f64>().clamp(1e-3, 1.0) }
         };
         let mut shares: Vec<f64> = self.targets.iter().map(wide).collect();
         shares.sort_by(f64::total_cmp);
@@ -623,6 +627,7 @@ impl Design {
         let of = |set: usize| numbers[set].unwrap_or(&[]);
         let mut judged = Judged {
             error: 0.0,
+            steps: self.steps.iter().all(|s| self.step_is_met(s, teeth)),
             forward: 1.0,
             backward: 1.0,
             self_locking: false,
@@ -673,6 +678,24 @@ impl Design {
             }
         }
         Some(judged)
+    }
+
+    /// Whether the step from a state to the next lies in its window; at the ends exact numbers decide.
+    fn step_is_met(&self, (ends, step): &([usize; 2], super::wish::Step), teeth: &Teeth) -> bool {
+        let y = self.variables(teeth);
+        let [a, b] = ends.map(|k| self.layout.states[self.targets[k].0].ratio.at(&y));
+        let [low, high] = [step.window[0].to_f64(), step.window[1].to_f64()];
+        let found = a / b;
+        let at_an_end = |end: f64| (found - end).abs() <= 1e-9 * end;
+        if at_an_end(low) || at_an_end(high) {
+            let states = self.certified(teeth);
+            let exact = |name: &str| states.as_ref()?.get(name)?.exact.clone();
+            if let Some((a, b)) = exact(&step.state).zip(exact(&step.next)).filter(|(_, b)| !b.is_zero()) {
+                let exact = &a / &b;
+                return step.window[0] <= exact && exact <= step.window[1];
+            }
+        }
+        low <= found && found <= high
     }
 
     /// What objectives, limits and demands need to know.

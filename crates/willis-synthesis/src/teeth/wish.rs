@@ -89,7 +89,7 @@ impl FromStr for Objective {
 pub struct Ratio {
     /// What is aimed at.
     pub aim: Rational,
-    /// Closed windows, ascending; the ratio must be in one of them.
+    /// Closed windows, ascending; the ratio must be in one of them. None: it may be anything.
     pub windows: Vec<[Rational; 2]>,
 }
 
@@ -124,12 +124,25 @@ impl Ratio {
         Self { aim, windows }
     }
 
+    /// Any ratio.
+    pub fn any() -> Self {
+        Self { aim: Rational::ZERO, windows: vec![] }
+    }
+
+    /// Whether it may be anything.
+    pub fn is_any(&self) -> bool {
+        self.windows.is_empty()
+    }
+
     fn aimed(self, aim: Rational) -> Self {
         Self { aim, ..self }
     }
 
     /// How far a ratio is from what is aimed at, relative to that; of either sign where both are wanted.
     pub fn deviation(&self, ratio: f64) -> f64 {
+        if self.is_any() {
+            return 0.0;
+        }
         let aim = self.aim.to_f64();
         let off = |r: f64| if aim == 0.0 { r.abs() } else { (r / aim - 1.0).abs() };
         if self.windows.len() > 1 { off(ratio).min(off(-ratio)) } else { off(ratio) }
@@ -143,6 +156,17 @@ pub struct Target {
     pub state: String,
     /// Its ratio.
     pub ratio: Ratio,
+}
+
+/// How many times the ratio of the next state the ratio of a state must be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The state.
+    pub state: String,
+    /// The next one of the file.
+    pub next: String,
+    /// A closed window.
+    pub window: [Rational; 2],
 }
 
 /// What may not be exceeded; none means no limit.

@@ -4,3 +4,4 @@ mod counts;
 mod files;
 mod layouts;
 mod own;
+mod steps;
