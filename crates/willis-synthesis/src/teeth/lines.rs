@@ -8,7 +8,7 @@
 //! p2 = p1 A (v s − s − r1)/(p1 (s + r1) + v s (r1 − p1))
 //! ```
 //!
-//! Quotients are taken in floating point; one that is within 10⁻⁶ of a whole number is decided in whole numbers.
+//! Quotients are taken in floating point; one that is within [`NEAR`] of a whole number is decided in whole numbers.
 
 use willis::exact::Rational;
 
@@ -39,48 +39,96 @@ fn crossing(s: i64, p1: i64, r1: i64, a: i64, (n, d): (i64, i64)) -> (i128, i128
     (p1 * a * (n * s - d * (s + r1)), d * p1 * (s + r1) + n * s * (r1 - p1))
 }
 
+/// First planets that are looked at together.
+const BLOCK: usize = 64;
+
+/// How near to a whole number a quotient may be before whole numbers decide.
+const NEAR: f64 = 1e-6;
+
+/// Lines of one sun, one first mismatch and one second mismatch as numbers: what all of them share.
+struct Lines {
+    sun: f64,
+    d1: f64,
+    d2: f64,
+    least_p2: f64,
+    most_p2: f64,
+    least_2: f64,
+    most_2: f64,
+}
+
+impl Lines {
+    /// Marks the lines, first planets from `first` on, whose windows may hold a whole number. Most do not: so this is
+    /// arithmetic without branches, and what is marked is looked at again.
+    fn mark(&self, first: i64, ends: [f64; 2], marks: &mut [u64]) {
+        for (k, mark) in marks.iter_mut().enumerate() {
+            let p1 = (first + k as i64) as f64;
+            let (r1, a) = (self.sun + 2.0 * p1 + self.d1, self.sun + p1 + self.d2);
+            let low = self.least_p2.max(self.least_2 - a);
+            let high = self.most_p2.min(self.most_2 - a);
+            let (above, below, slope) = (p1 * a, p1 * (self.sun + r1), self.sun * (r1 - p1));
+            let at = |v: f64| above * (v * self.sun - self.sun - r1) / (below + v * slope);
+            let [x, y] = ends.map(at);
+            let pole = above / (r1 - p1);
+            let delicate = !(x <= y) | ((x < pole) != (y < pole)) | !(x.abs() <= f64::MAX) | !(y.abs() <= f64::MAX);
+            // The largest whole number below the upper end, by what the sum with a large number keeps.
+            const SHIFT: f64 = 6_755_399_441_055_744.0;
+            let last = ((y.min(high + 1.0) + 2.0 * NEAR - 0.5) + SHIFT) - SHIFT;
+            let holds = (last >= x - 2.0 * NEAR) & (x <= high + 0.5) & (y >= low - 0.5);
+            *mark = u64::from((delicate | holds) & (low <= high) & (a > 0.0));
+        }
+    }
+}
+
 /// Calls `found` with the teeth of every Wolfrom drive whose ratio is in one of the windows, for one sun. The order is that
 /// of the first mismatch, `p1`, the second mismatch, windows, `p2`.
 pub(crate) fn lines(space: &SetSpace, sun: i64, windows: &[Bounds], found: &mut dyn FnMut([i64; 5])) {
     let [planet_1, ring_1, planet_2, ring_2] = [1, 2, 3, 4].map(|k| &space.gears[k]);
     let [most_1, most_p2, most_2] = [2, 3, 4].map(|k| space.most(k));
     let least_p2 = planet_2.least().unwrap_or(1).max(1);
+    let least_2 = ring_2.least().unwrap_or(1);
     let whole = planet_2.is_gapless() && ring_2.is_gapless();
     let floats: Vec<[f64; 2]> = windows.iter().map(|w| w.map(|(n, d)| n as f64 / d as f64)).collect();
+    let least_1 = planet_1.least().unwrap_or(1).max(1);
+    let mut marks = vec![[0; BLOCK]; space.mismatch.len() * windows.len()];
     for d1 in &space.mismatch {
-        for p1 in planet_1.within(1, (most_1 - sun - d1) / 2) {
-            let r1 = sun + 2 * p1 + d1;
-            if r1 <= p1 || !ring_1.contains(r1) {
-                continue;
+        let most = planet_1.most().unwrap_or(i64::MAX).min((most_1 - sun - d1) / 2);
+        for block in (least_1..=most).step_by(BLOCK) {
+            let size = (most - block + 1).min(BLOCK as i64) as usize;
+            let all = space.mismatch.iter().flat_map(|d2| floats.iter().map(move |w| (*d2, *w)));
+            for ((d2, ends), own) in all.zip(&mut marks) {
+                let [sun, d1, d2, least_p2, most_p2, least_2, most_2] =
+                    [sun, *d1, d2, least_p2, most_p2, least_2, most_2].map(|x| x as f64);
+                Lines { sun, d1, d2, least_p2, most_p2, least_2, most_2 }.mark(block, ends, &mut own[..size]);
             }
-            let (s_f, p_f, r_f) = (sun as f64, p1 as f64, r1 as f64);
-            for d2 in &space.mismatch {
-                let a = sun + p1 + d2;
-                let low = least_p2.max(ring_2.least().unwrap_or(1) - a);
-                let high = most_p2.min(most_2 - a);
-                if low > high || a <= 0 {
+            for k in 0..size {
+                if marks.iter().all(|own| own[k] == 0) {
                     continue;
                 }
-                // Both branches rise, so that a window is an interval on each side of the pole.
-                let pole = p_f * a as f64 / (r_f - p_f);
-                for (window, ends) in windows.iter().zip(&floats) {
+                let p1 = block + k as i64;
+                let r1 = sun + 2 * p1 + d1;
+                if r1 <= p1 || !planet_1.contains(p1) || !ring_1.contains(r1) {
+                    continue;
+                }
+                let all = space.mismatch.iter().flat_map(|d2| windows.iter().zip(&floats).map(move |w| (d2, w)));
+                for ((d2, (window, ends)), _) in all.zip(&marks).filter(|(_, own)| own[k] != 0) {
+                    let a = sun + p1 + d2;
+                    let low = least_p2.max(least_2 - a);
+                    let high = most_p2.min(most_2 - a);
+                    let (s_f, p_f, r_f) = (sun as f64, p1 as f64, r1 as f64);
+                    // Both branches rise, so that a window is an interval on each side of the pole.
+                    let pole = p_f * a as f64 / (r_f - p_f);
                     let at =
                         |v: f64| p_f * a as f64 * (v * s_f - s_f - r_f) / (p_f * (s_f + r_f) + v * s_f * (r_f - p_f));
                     let [x, y] = [at(ends[0]), at(ends[1])];
-                    let ends_in_order = x <= y;
                     // Beyond the pole the ratio tends to −p1 (s + r1)/(s (r1 − p1)); a window that contains this value or
                     // infinity opens the interval.
-                    let delicate = !ends_in_order || !x.is_finite() || !y.is_finite() || (x < pole) != (y < pole);
+                    let delicate = x > y || !x.is_finite() || !y.is_finite() || (x < pole) != (y < pole);
                     if delicate || !whole {
                         for p2 in planet_2.within(low, high) {
                             if ring_2.contains(a + p2) && inside(sun, p1, r1, p2, a + p2, window) {
                                 found([sun, p1, r1, p2, a + p2]);
                             }
                         }
-                        continue;
-                    }
-                    // Most windows lie between two whole numbers, or outside the range.
-                    if x > high as f64 + 0.5 || y < low as f64 - 0.5 {
                         continue;
                     }
                     let first = up(x, sun, p1, r1, a, window[0]).max(low);
@@ -99,7 +147,7 @@ fn up(x: f64, s: i64, p1: i64, r1: i64, a: i64, v: (i64, i64)) -> i64 {
     // Towards zero, in one instruction; x is within the range of numbers that are asked for, or far below.
     let cut = x.clamp(-1e9, 1e9) as i64;
     let rest = x - cut as f64;
-    if (1e-6..1.0 - 1e-6).contains(&rest.abs()) {
+    if (NEAR..1.0 - NEAR).contains(&rest.abs()) {
         return cut + i64::from(rest > 0.0);
     }
     let (n, d) = crossing(s, p1, r1, a, v);
@@ -111,7 +159,7 @@ fn up(x: f64, s: i64, p1: i64, r1: i64, a: i64, v: (i64, i64)) -> i64 {
 fn down(x: f64, s: i64, p1: i64, r1: i64, a: i64, v: (i64, i64)) -> i64 {
     let cut = x.clamp(-1e9, 1e9) as i64;
     let rest = x - cut as f64;
-    if (1e-6..1.0 - 1e-6).contains(&rest.abs()) {
+    if (NEAR..1.0 - NEAR).contains(&rest.abs()) {
         return cut - i64::from(rest < 0.0);
     }
     let (n, d) = crossing(s, p1, r1, a, v);
