@@ -23,9 +23,22 @@ fn teeth(set: &SetRatio) -> [i64; 2] {
     [sun.saturating_mul(times), ring.saturating_mul(times)]
 }
 
-fn quoted(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+pub(super) fn quoted(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     let all: Vec<String> = names.into_iter().map(|n| format!("\"{}\"", n.as_ref())).collect();
     format!("[{}]", all.join(", "))
+}
+
+/// A set of a train file: its number, its teeth, the members of sun, ring and carrier.
+pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String]) -> String {
+    let [sun, ring] = teeth(set);
+    let member = |k: usize| on.get(k).map_or("", String::as_str);
+    format!(
+        "\n[[set]]\nname = \"P{n}\"\nsun = {{ member = \"{}\", teeth = {sun} }}\nring = {{ member = \"{}\", teeth = \
+         {ring} }}\ncarrier = \"{}\"\n",
+        member(0),
+        member(1),
+        member(2),
+    )
 }
 
 impl Scheme {
@@ -46,14 +59,7 @@ impl Scheme {
         };
         for (n, set) in self.sets.iter().enumerate() {
             let n = n + 1;
-            let [sun, ring] = teeth(set);
-            text += &format!(
-                "\n[[set]]\nname = \"P{n}\"\nsun = {{ member = \"{}\", teeth = {sun} }}\nring = {{ member = \"{}\", \
-                 teeth = {ring} }}\ncarrier = \"{}\"\n",
-                on(format!("s{n}")),
-                on(format!("r{n}")),
-                on(format!("c{n}")),
-            );
+            text += &set_lines(n, set, &["s", "r", "c"].map(|part| on(format!("{part}{n}"))));
         }
         for element in &self.elements {
             let kind = if element.kind == ShiftElementKind::Brake { "brake" } else { "clutch" };
