@@ -7,7 +7,7 @@ use willis::train::Train;
 use crate::parts::alive::guide;
 use crate::parts::style::{Anchor, BOLD, FAINT, LINE, fit, line, lines, page, text};
 use crate::stick::draw::scheme_of;
-use crate::{Columns, LeverRequest, lever, stick};
+use crate::{Columns, Lever, LeverRequest, lever, stick};
 
 /// Margin of the sheet and gap between panels.
 const MARGIN: f64 = 28.0;
@@ -92,6 +92,16 @@ fn words(panel: &SidePanel) -> String {
     format!("{}: {}", panel.title, rows.join(", "))
 }
 
+/// Levers give the sets their places across a panel: those of the first state that has any.
+fn any_lever(train: &Train) -> Result<Lever, Diagnostics> {
+    let states = train.states().iter().map(|state| LeverRequest::State(state.name.clone()));
+    let first = lever(train, &LeverRequest::First);
+    match first {
+        Ok(levers) => Ok(levers),
+        Err(why) => states.into_iter().find_map(|request| lever(train, &request).ok()).ok_or(why),
+    }
+}
+
 /// A panel, and where it ends.
 fn draw(panel: &SidePanel, left: f64, top: f64) -> Result<(Group, f64), Diagnostics> {
     let mut g = Group::new().add(
@@ -103,14 +113,15 @@ fn draw(panel: &SidePanel, left: f64, top: f64) -> Result<(Group, f64), Diagnost
         y += 16.0;
     }
     let data = stick(&panel.train, None)?;
-    let levers = lever(&panel.train, &LeverRequest::First)?;
+    let levers = any_lever(&panel.train)?;
     let columns = Columns::new(&data, &levers, PANEL);
     let (scheme, [width, height]) = scheme_of(&data, &columns, STICK);
     let scale = (PANEL / width).min(1.0);
     let (x, room) = (left + (PANEL - width * scale) / 2.0, height * scale);
     let place = format!("translate({x:.1} {:.1}) scale({scale:.4})", y + 4.0);
     g = g.add(Group::new().set("transform", place).add(scheme));
-    y += room.max(STICK * scale) + 30.0;
+    // The names of the sets stand below the schematic.
+    y += room.max(STICK * scale) + 54.0;
     let column = |k: usize| left + PANEL * (k as f64 + 0.5) / panel.head.len().max(1) as f64;
     for (k, head) in panel.head.iter().enumerate() {
         g = g.add(text(column(k), y, 12.0, Anchor::Middle, head).set("fill", FAINT));

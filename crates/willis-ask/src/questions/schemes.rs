@@ -10,7 +10,6 @@ mod text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::Contract;
-use willis::diagnostic::Diagnostics;
 use willis::work::Work;
 use willis_synthesis::schemes as library;
 use willis_synthesis::schemes::{Harvest, HybridHarvest, Hybrids};
@@ -186,10 +185,6 @@ impl Question for Schemes {
     ];
     const IS_CUT: bool = true;
     type Answer = SchemesAnswer;
-
-    fn check(&self) -> Result<(), Diagnostics> {
-        self.fitting()
-    }
 
     fn ask(&self, _: &[Given], work: &dyn Work) -> Result<SchemesAnswer, Refusal> {
         self.plan()?.ask(&self.resume, work)

@@ -1,10 +1,14 @@
 //! A hybrid as a train file.
 
-use super::hybrid::{HybridDesign, HybridMode, ModeKind};
+use super::hybrid::{HybridDesign, HybridMode};
 use super::train_file::{quoted, set_lines};
 
 /// Efficiency of a machine in the file, a usual one of motor and inverter together.
 const MACHINE: &str = "0.93";
+/// Speed of the engine in the operating points of the file, and where they lie: at this part of the ratio of a mechanical
+/// point.
+const ENGINE_RPM: f64 = 2000.0;
+const BESIDE: f64 = 0.8;
 
 impl HybridMode {
     /// What its state is called in a train file: what it is, and what is closed.
@@ -17,9 +21,10 @@ impl HybridMode {
 }
 
 impl HybridDesign {
-    /// The hybrid as a complete train file: sets, the motors as machines of an electric variator, clutches and brakes, and a
-    /// state for every mode in which something drives the output. Its teeth are those of the wish, or small numbers with the
-    /// same ratios; efficiencies of the meshes are left to the defaults of the file, machines have 0.93.
+    /// The hybrid as a complete train file: sets, the motors as machines of an electric variator, clutches and brakes, a
+    /// state for every mode in which something drives the output, an operating point in every split mode near a mechanical
+    /// point. Its teeth are those of the wish, or small numbers with the
+    /// same ratios; mesh efficiencies are 0.98 of sun and planet and 0.99 of planet and ring, machines have 0.93.
     pub fn to_toml(&self) -> String {
         let shaft = |digit: char| digit.to_digit(36).and_then(|s| self.shafts.get(s as usize)).map_or("", String::as_str);
         let name = |shaft: &str| if shaft == "housing" { "frame".to_owned() } else { shaft.to_owned() };
@@ -28,7 +33,7 @@ impl HybridDesign {
         let kinds: Vec<String> = self.modes.iter().map(|m| m.state()).collect();
         text += &format!("# {}\n\nformat = 1\nname = \"hybrid {}\"\n", kinds.join("; "), self.id);
         text += &format!(
-            "source = \"Found by a search over all hybrids: layout {}. Efficiency of the machines assumed.\"\n\n",
+            "source = \"Found by a search over all hybrids: layout {}. Efficiencies of meshes and machines assumed.\"\n\n",
             self.id
         );
         text += &format!("members = {}\nterminals = [\"engine\", \"output\"]\n", quoted(turning));
@@ -47,14 +52,21 @@ impl HybridDesign {
             text += &format!("\n[[shift_element]]\nname = \"C{n}\"\nkind = \"{kind}\"\nmembers = {members}\n");
         }
         for mode in self.modes.iter().filter(|m| m.drives()) {
-            let input = match mode.kind {
-                ModeKind::Electric => mode.turning.iter().find(|t| *t == "A" || *t == "B").map_or("A", String::as_str),
-                _ => "engine",
-            };
             text += &format!(
-                "\n[[state]]\nname = \"{}\"\nengaged = {}\ninput = \"{input}\"\noutput = \"output\"\n",
+                "\n[[state]]\nname = \"{}\"\nengaged = {}\ninput = \"{}\"\noutput = \"output\"\n",
                 mode.state(),
-                quoted(&mode.closed)
+                quoted(&mode.closed),
+                mode.input(),
+            );
+        }
+        for mode in &self.modes {
+            // Beside the mechanical point both motors turn.
+            let Some(point) = mode.mechanical_points.last() else { continue };
+            let output = ENGINE_RPM / (BESIDE * point.to_f64());
+            text += &format!(
+                "\n[[operation]]\nname = \"{0}\"\nstate = \"{0}\"\nspeeds = {{ engine = \"{ENGINE_RPM} rpm\", output = \
+                 \"{output:.1} rpm\" }}\ntorques = {{ engine = \"100 N m\" }}\n",
+                mode.state(),
             );
         }
         text
@@ -62,6 +74,12 @@ impl HybridDesign {
 }
 
 impl HybridMode {
+    /// What drives: the engine where it turns, else the first motor that does.
+    fn input(&self) -> &str {
+        let turns = |name: &&&str| self.turning.iter().any(|t| t == **name);
+        ["engine", "A", "B"].iter().find(turns).copied().unwrap_or("engine")
+    }
+
     /// Whether the output turns with something that drives it.
     fn drives(&self) -> bool {
         let turns = |name: &str| self.turning.iter().any(|t| t == name);

@@ -324,12 +324,12 @@ fn statement(wish: &Wish, space: &SchemeSpace, schemes: u64, complete: bool, sha
     };
     let ratios: Vec<String> = wish.sets.iter().map(ToString::to_string).collect();
     let mut text = format!(
-        "{what}, tooth ratios {}, {} of {} elements closed in every gear: {} layouts, {} choices of elements that differ \
+        "{what}, tooth ratios {}, {} of {} elements closed in every gear: {}, {} choices of elements that differ \
          in what they do, ",
         ratios.join(", "),
         wish.closed,
         wish.elements,
-        space.examined,
+        if space.examined == 1 { "1 layout".to_owned() } else { format!("{} layouts", space.examined) },
         space.choices,
     );
     if complete {

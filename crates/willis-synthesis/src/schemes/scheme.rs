@@ -67,8 +67,8 @@ pub struct SchemeGear {
     pub torques: Named<f64>,
     /// Slip of every open element, the speed of the first of its shafts less that of the second.
     pub slips: Named<f64>,
-    /// Output over input power when the input drives, of the scheme's train file with the mesh efficiencies that it takes
-    /// where none are given ([`Schemes::rate`](super::Schemes::rate)).
+    /// Output over input power when the input drives, of the scheme's train file with the mesh efficiencies that it has
+    /// ([`Schemes::rate`](super::Schemes::rate)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub efficiency: Option<f64>,
     /// Why there is no efficiency.

@@ -83,7 +83,7 @@ fn shown(text: &str) -> String {
 
 impl Schemes {
     /// Options that do not belong to what is searched for, or exclude each other.
-    pub(super) fn fitting(&self) -> Result<(), Diagnostics> {
+    fn fitting(&self) -> Result<(), Diagnostics> {
         let mut wrong = Wrong::default();
         let of_schemes = [
             ("layout", self.layout.is_some()),
@@ -142,10 +142,10 @@ impl Schemes {
 
     /// The search, with everything that is wrong with the request.
     pub(super) fn plan(&self) -> Result<Plan, Refusal> {
-        let mut wrong = Wrong::default();
+        let mut wrong = Wrong(self.fitting().err().unwrap_or_default());
         let mut assumptions = vec![];
         let shard = self.shard_of(&mut wrong);
-        let layout = self.layout_of(&mut wrong)?;
+        let layout = if self.hybrid { None } else { self.layout_of(&mut wrong)? };
         let sets = self.ratios(layout.as_ref(), &mut wrong, &mut assumptions);
         let has_sets = sets.is_some();
         let sets = sets.unwrap_or_default();
@@ -227,6 +227,10 @@ impl Schemes {
         ];
         let known: Vec<(usize, &str)> = known.into_iter().flatten().collect();
         let Some(&(sets, first)) = known.first() else {
+            // What is wrong with a layout has been said.
+            if self.layout.is_some() && !self.hybrid {
+                return None;
+            }
             wrong.say(Code::MissingKey, "it is not said how many sets there are", "give `sets`, `k` or `layout`");
             return None;
         };
@@ -279,6 +283,7 @@ impl Schemes {
     ) -> Wish {
         // A layout leaves one freedom with so many closed elements.
         let own = layout.and_then(|(own, _)| own.shafts().checked_sub(own.sets() + 2)).filter(|n| *n > 0);
+        let own = own.or_else(|| self.layout.as_ref().filter(|_| layout.is_none()).map(|_| 2));
         let hint = "how many elements are closed in every gear, as in 2";
         let closed = wrong.needed("closed", self.closed.or(own), 2, hint);
         let hint = "how many clutches and brakes there are, as in 5";

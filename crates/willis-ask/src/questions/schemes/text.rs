@@ -105,7 +105,7 @@ fn counts(all: &Schemes) -> String {
     );
     out += &fact("choices", &format!("{} of elements that differ in what they do", space.choices));
     let classes = "by what the elements do, wherever they stand";
-    out += &fact("schemes", &format!("{} in {} classes {classes}", bold(&found.schemes.to_string()), found.classes));
+    out += &fact("schemes", &format!("{} in {} classes {classes}", found.schemes, found.classes));
     if !found.by_brakes.is_empty() {
         let by: Vec<String> = found.by_brakes.iter().map(|(brakes, n)| format!("{n} with {brakes}")).collect();
         out += &fact("by brakes", &by.join(", "));
@@ -298,7 +298,7 @@ pub fn hybrids(all: &Hybrids) -> String {
     out += &fact("layouts", &format!("{}, with the motors exchanged counted once", all.layouts));
     out += &fact("choices", &format!("{} of clutches that differ in what they do", all.choices));
     let places = format!("have these modes, with {} places for their clutches", all.designs_found);
-    out += &fact("designs", &format!("{} {places}", bold(&all.kinematic.to_string())));
+    out += &fact("designs", &format!("{} {places}", all.kinematic));
     let modes: Vec<String> = all.modes.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
     out += &fact("modes", &modes.join(", "));
     if all.designs.is_empty() {
