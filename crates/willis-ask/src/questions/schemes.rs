@@ -25,13 +25,7 @@ use crate::{Attachment, Extra, File, Form, Given, Holds, Of, Question, Refusal};
 /// Where nothing is left it says which wish must give way, and how far. With --write a scheme becomes a train file that every
 /// other command takes.
 ///
-///   willis schemes --sets 3 --elements 5 --closed 2 --forward 6 --step 1.1..2.2 --forward-range 0.5..6
-///
-///   willis schemes --layout examples/zf-8hp70.toml --elements 5 --forward 8 --write 1 -o scheme.toml
-///
-/// With --hybrid: trains of an engine, an output and two motors whose clutches make the modes that are needed.
-///
-///   willis schemes --hybrid --sets 2 --clutches 3 --need input-split,compound-split,electric,fixed
+/// With --hybrid it finds trains of an engine, an output and two motors whose clutches make the modes that are needed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
