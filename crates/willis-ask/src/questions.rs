@@ -53,7 +53,7 @@ pub use regimes::{Regimes, RegimesAnswer};
 #[cfg(feature = "pictures")]
 pub use report::Report;
 #[cfg(feature = "synthesis")]
-pub use schemes::{FoundHybrids, FoundSchemes, Schemes, SchemesAnswer};
+pub use schemes::{HybridResult, SchemeResult, Schemes, SchemesAnswer};
 pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, MOST_KEPT, Simulate, run_text as simulation_text, tell_of_events_left_out};
 pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};

@@ -33,9 +33,15 @@ fn requests_without_train(entry: &Entry) -> Vec<Value> {
         "validate" => vec![json!({}), json!({ "case": "losses" })],
         "explain" => vec![json!({}), json!({ "code": "E101" })],
         "schemes" => {
-            let two = json!({ "sets": 2, "elements": 4, "closed": 2, "forward": 3, "rediscover": "gm", "order": "spread" });
+            let two =
+                json!({ "sets": 2, "elements": 4, "closed": 2, "forward": 3, "rediscover": "gm", "order": "spread" });
             let none = json!({ "sets": 1, "elements": 2, "closed": 1, "forward": 2, "step": "9..10" });
-            vec![json!({}), two, none, json!({ "hybrid": true, "sets": 2, "clutches": 3, "need": ["input-split", "fixed"] })]
+            vec![
+                json!({}),
+                two,
+                none,
+                json!({ "hybrid": true, "sets": 2, "clutches": 3, "need": ["input-split", "fixed"] }),
+            ]
         }
         _ => vec![json!({})],
     }

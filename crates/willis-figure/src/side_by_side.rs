@@ -104,9 +104,8 @@ fn any_lever(train: &Train) -> Result<Lever, Diagnostics> {
 
 /// A panel, and where it ends.
 fn draw(panel: &SidePanel, left: f64, top: f64) -> Result<(Group, f64), Diagnostics> {
-    let mut g = Group::new().add(
-        text(left, top, 15.0, Anchor::Start, &fit(&panel.title, PANEL / BOLD, 15.0)).set("font-weight", "bold"),
-    );
+    let mut g = Group::new()
+        .add(text(left, top, 15.0, Anchor::Start, &fit(&panel.title, PANEL / BOLD, 15.0)).set("font-weight", "bold"));
     let mut y = top + 17.0;
     for l in lines(&panel.subtitle, PANEL, 12.0) {
         g = g.add(text(left, y, 12.0, Anchor::Start, &l).set("fill", FAINT));

@@ -40,9 +40,7 @@ mod wish;
 
 pub use choose::MAX_ELEMENTS;
 pub use harvest::Harvest;
-pub use hybrid::{
-    HybridDesign, HybridHarvest, HybridMode, HybridSearch, HybridWish, Hybrids, ModeKind, hybrids,
-};
+pub use hybrid::{HybridDesign, HybridHarvest, HybridMode, HybridSearch, HybridWish, Hybrids, ModeKind, hybrids};
 pub use known::{KNOWN, Known, Rediscovered, usual_ratios};
 pub use layout::{GROUND, INPUT, Layout, Layouts, MAX_SETS, NoLayout, OUTPUT, Prefix, count_layouts};
 pub use report::{FoundSchemes, SchemeCompleteness, SchemeRelaxation, SchemeSpace, SchemeStage, Schemes};

@@ -121,9 +121,9 @@ pub struct Schemes {
 #[serde(untagged)]
 pub enum SchemesAnswer {
     /// `willis-schemes-1`.
-    Schemes(Box<FoundSchemes>),
+    Schemes(Box<SchemeResult>),
     /// `willis-hybrids-1`.
-    Hybrids(Box<FoundHybrids>),
+    Hybrids(Box<HybridResult>),
 }
 
 impl Contract for SchemesAnswer {
@@ -133,7 +133,7 @@ impl Contract for SchemesAnswer {
 /// Shift schemes with what a search can go on from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub struct FoundSchemes {
+pub struct SchemeResult {
     /// `willis-schemes-1`.
     pub all: library::Schemes,
     /// What the parts that are done have found; not in the contract.
@@ -144,7 +144,7 @@ pub struct FoundSchemes {
 /// Hybrids with what a search can go on from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
-pub struct FoundHybrids {
+pub struct HybridResult {
     /// `willis-hybrids-1`.
     pub all: Hybrids,
     /// What the parts that are done have found; not in the contract.

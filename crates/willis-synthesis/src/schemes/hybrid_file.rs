@@ -26,7 +26,8 @@ impl HybridDesign {
     /// point. Its teeth are those of the wish, or small numbers with the
     /// same ratios; mesh efficiencies are 0.98 of sun and planet and 0.99 of planet and ring, machines have 0.93.
     pub fn to_toml(&self) -> String {
-        let shaft = |digit: char| digit.to_digit(36).and_then(|s| self.shafts.get(s as usize)).map_or("", String::as_str);
+        let shaft =
+            |digit: char| digit.to_digit(36).and_then(|s| self.shafts.get(s as usize)).map_or("", String::as_str);
         let name = |shaft: &str| if shaft == "housing" { "frame".to_owned() } else { shaft.to_owned() };
         let turning: Vec<&String> = self.shafts.iter().filter(|s| *s != "housing").collect();
         let mut text = String::new();
@@ -41,8 +42,7 @@ impl HybridDesign {
         for (n, (set, three)) in self.sets.iter().zip(members.chunks(3)).enumerate() {
             text += &set_lines(n + 1, set, three);
         }
-        let machine =
-            |m: &str| format!("    {{ name = \"motor {m}\", member = \"{m}\", efficiency = {MACHINE} }},\n");
+        let machine = |m: &str| format!("    {{ name = \"motor {m}\", member = \"{m}\", efficiency = {MACHINE} }},\n");
         text += "\n[[variator]]\nname = \"electric path\"\nkind = \"electric\"\nmachines = [\n";
         text += &(machine("A") + &machine("B") + "]\n");
         for (n, joins) in self.clutches.iter().enumerate() {

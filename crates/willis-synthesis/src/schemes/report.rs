@@ -208,7 +208,15 @@ impl Schemes {
         Self {
             format: Format::new(),
             wish: wish.clone(),
-            completeness: SchemeCompleteness { complete, parts, asked: parts, done, share, sample: wish.sample, statement },
+            completeness: SchemeCompleteness {
+                complete,
+                parts,
+                asked: parts,
+                done,
+                share,
+                sample: wish.sample,
+                statement,
+            },
             space,
             waterfall,
             found: FoundSchemes {
@@ -264,7 +272,10 @@ fn relaxed(wish: &Wish) -> Vec<(String, Wish)> {
     }
     if wish.step != Bounds::default() {
         let free = Bounds::default();
-        all.push((format!("steps of any size instead of {}", decimals(&wish.step)), Wish { step: free, ..base.clone() }));
+        all.push((
+            format!("steps of any size instead of {}", decimals(&wish.step)),
+            Wish { step: free, ..base.clone() },
+        ));
     }
     if let Bounds { min: Some(min), max: Some(max) } = &wish.step {
         let upward = Bounds { min: Some(min.clone()), max: None };

@@ -59,7 +59,10 @@ impl Scheme {
         let turning: Vec<&str> = self.shafts.iter().filter(|s| s.name != "housing").map(|s| s.name.as_str()).collect();
         text += &format!("# {} gears, spread {:.3}: {}\n\n", self.gears.len(), self.spread, ratios.join("  "));
         text += &format!("format = 1\nname = \"{name}\"\n");
-        text += &format!("source = \"Found by a search over all shift schemes: layout {}. Mesh efficiencies assumed.\"\n\n", self.id);
+        text += &format!(
+            "source = \"Found by a search over all shift schemes: layout {}. Mesh efficiencies assumed.\"\n\n",
+            self.id
+        );
         text += &format!("members = {}\nterminals = [\"input\", \"output\"]\n", quoted(turning));
         let on = |member: String| match self.shafts.iter().find(|s| s.members.contains(&member)) {
             Some(shaft) if shaft.name != "housing" => shaft.name.clone(),

@@ -8,11 +8,11 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::work::{Serial, Work};
 use willis_synthesis::schemes::{
-    Bounds, Harvest, HybridHarvest, HybridSearch, HybridWish, KNOWN, Known, Layout, MAX_SETS, ModeKind,
-    Order, Search, SetRatio, Wish, usual_ratios,
+    Bounds, Harvest, HybridHarvest, HybridSearch, HybridWish, KNOWN, Known, Layout, MAX_SETS, ModeKind, Order, Search,
+    SetRatio, Wish, usual_ratios,
 };
 
-use super::{FoundHybrids, FoundSchemes, Schemes, SchemesAnswer};
+use super::{HybridResult, SchemeResult, Schemes, SchemesAnswer};
 use crate::{Attachment, Refusal};
 
 /// The most rows that are shown: each is analysed.
@@ -24,7 +24,8 @@ const MOST_LISTED: usize = 1000;
 
 /// Whether a text is the digits of a layout and no name of a file.
 pub(super) fn is_digits(text: &str) -> bool {
-    text.starts_with(|c: char| c.is_ascii_digit()) && text.chars().all(|c| c.is_ascii_digit() || ('a'..='h').contains(&c))
+    text.starts_with(|c: char| c.is_ascii_digit())
+        && text.chars().all(|c| c.is_ascii_digit() || ('a'..='h').contains(&c))
 }
 
 /// A search that is ready, and what is to be said with its answer.
@@ -110,10 +111,14 @@ impl Schemes {
             ("mobility", self.mobility.is_some()),
         ];
         let other: &[(&str, bool)] = if self.hybrid { &of_schemes } else { &of_hybrids };
-        let given: Vec<String> = other.iter().filter(|(_, given)| *given).map(|(name, _)| format!("`{name}`")).collect();
+        let given: Vec<String> =
+            other.iter().filter(|(_, given)| *given).map(|(name, _)| format!("`{name}`")).collect();
         if !given.is_empty() {
             let (of, instead) = match self.hybrid {
-                true => ("shift schemes", "hybrids have `sets`, `k`, `clutches`, `need` and `mobility`; or leave out `hybrid`"),
+                true => (
+                    "shift schemes",
+                    "hybrids have `sets`, `k`, `clutches`, `need` and `mobility`; or leave out `hybrid`",
+                ),
                 false => ("hybrids", "say `hybrid` too, or leave them out"),
             };
             let are = if given.len() == 1 { "belongs" } else { "belong" };
@@ -121,7 +126,11 @@ impl Schemes {
         }
         for (name, count) in [("k", self.k.len()), ("need", self.need.len()), ("write", self.write.len())] {
             if count > MOST_LISTED {
-                wrong.say(Code::OutOfRange, format!("`{name}` has {count} entries"), format!("give {MOST_LISTED} at most"));
+                wrong.say(
+                    Code::OutOfRange,
+                    format!("`{name}` has {count} entries"),
+                    format!("give {MOST_LISTED} at most"),
+                );
             }
         }
         if self.write.contains(&0) {
@@ -179,13 +188,23 @@ impl Schemes {
         let parts = text.split_once('/').and_then(|(k, n)| Some([k.trim().parse().ok()?, n.trim().parse().ok()?]));
         match parts {
             Some([_, n]) if n > MOST_SHARDS => {
-                wrong.say(Code::OutOfRange, format!("shard {}: too many parts", shown(text)), format!("{MOST_SHARDS} at most"));
+                wrong.say(
+                    Code::OutOfRange,
+                    format!("shard {}: too many parts", shown(text)),
+                    format!("{MOST_SHARDS} at most"),
+                );
             }
             Some([k, n]) if (1..=n).contains(&k) => return Some([k - 1, n]),
             Some([k, n]) => {
-                wrong.say(Code::OutOfRange, format!("there is no part {k} of {n}"), "parts are counted from 1, as in 3/16");
+                wrong.say(
+                    Code::OutOfRange,
+                    format!("there is no part {k} of {n}"),
+                    "parts are counted from 1, as in 3/16",
+                );
             }
-            None => wrong.say(Code::WrongType, format!("shard {}: is no part", shown(text)), "write 3/16: part 3 of 16"),
+            None => {
+                wrong.say(Code::WrongType, format!("shard {}: is no part", shown(text)), "write 3/16: part 3 of 16")
+            }
         }
         None
     }
@@ -236,13 +255,21 @@ impl Schemes {
         };
         if let Some((other, second)) = known.iter().find(|(n, _)| *n != sets) {
             let message = format!("{first} says {}, {second} {other}", crate::style::plural(sets, "set", "sets"));
-            wrong.say(Code::Conflict, message, "leave out one of the two, or give as many tooth ratios as there are sets");
+            wrong.say(
+                Code::Conflict,
+                message,
+                "leave out one of the two, or give as many tooth ratios as there are sets",
+            );
             return None;
         }
         if let Some(own) = layout.and_then(|(_, ratios)| ratios.clone()) {
             if !given.is_empty() {
                 let hint = "leave out `k`, or give the digits of the layout";
-                wrong.say(Code::Conflict, "the train of `layout` has tooth ratios of its own, and `k` gives others", hint);
+                wrong.say(
+                    Code::Conflict,
+                    "the train of `layout` has tooth ratios of its own, and `k` gives others",
+                    hint,
+                );
             }
             return Some(own);
         }
@@ -267,7 +294,10 @@ impl Schemes {
         if known.is_none() {
             let names: Vec<&str> = KNOWN.iter().map(|k| k.id).collect();
             let message = format!("no known transmission is called `{}`", shown(name));
-            let mut said = Diagnostic::new(Code::UnknownSelection, "", message).suggest(name, names.iter().copied());
+            // A part of a name that names one alone will do.
+            let parts = names.iter().flat_map(|id| id.split('-')).filter(|part| Known::named(part).is_some());
+            let said = Diagnostic::new(Code::UnknownSelection, "", message);
+            let mut said = said.suggest(&name.to_lowercase(), names.iter().copied().chain(parts));
             said.replacement = None;
             wrong.0.push(said.hint(format!("there are {}", names.join(", "))));
         }
@@ -290,9 +320,8 @@ impl Schemes {
         let elements = wrong.needed("elements", self.elements, closed.saturating_add(1).min(8), hint);
         let forward = wrong.needed("forward", self.forward, 1, "how many forward gears there are, as in 6");
         const RANGE: &str = "write a range of positive numbers: 1.1..2.2, ..3 or 1/2..";
-        let mut range = |field, text: &Option<String>| -> Bounds {
-            wrong.read(field, text.as_ref(), RANGE).unwrap_or_default()
-        };
+        let mut range =
+            |field, text: &Option<String>| -> Bounds { wrong.read(field, text.as_ref(), RANGE).unwrap_or_default() };
         let forward_range = range("forward_range", &self.forward_range);
         let reverse_range = range("reverse_range", &self.reverse_range);
         let step = range("step", &self.step);
@@ -438,13 +467,13 @@ impl Plan {
                 if whole && all.found.schemes == 0 {
                     all.relax(&Usual(work));
                 }
-                SchemesAnswer::Schemes(Box::new(FoundSchemes { all, harvest }))
+                SchemesAnswer::Schemes(Box::new(SchemeResult { all, harvest }))
             }
             (Kind::Hybrids(search), Kept::Hybrids(harvest)) => {
                 let mut all = search.answer(&harvest);
                 all.completeness.asked = asked;
                 all.assumptions.clone_from(&self.assumptions);
-                SchemesAnswer::Hybrids(Box::new(FoundHybrids { all, harvest }))
+                SchemesAnswer::Hybrids(Box::new(HybridResult { all, harvest }))
             }
             _ => unreachable!("what is kept is of the kind that is searched"),
         }

@@ -81,9 +81,9 @@ fn gears(all: &Schemes) -> Table {
     let mut t = Table::new("gears", fixed.into_iter().chain(factors.iter().map(|(name, kind)| (name.as_str(), *kind))));
     for (k, s) in all.schemes.iter().enumerate() {
         for g in s.gears.iter().chain(&s.reverse) {
-            let factors = elements.iter().flat_map(|e| -> [Cell; 2] {
-                [g.torques.get(e).copied().into(), g.slips.get(e).copied().into()]
-            });
+            let factors = elements
+                .iter()
+                .flat_map(|e| -> [Cell; 2] { [g.torques.get(e).copied().into(), g.slips.get(e).copied().into()] });
             let SchemeGear { name, closed, ratio, value, step, efficiency, no_efficiency, .. } = g;
             let fixed: [Cell; 9] = [
                 (k + 1).into(),

@@ -78,7 +78,9 @@ fn wished(wish: &Wish) -> String {
 /// What else the wish says.
 fn limits(wish: &Wish) -> String {
     let range = |name: &str, bounds: &willis_synthesis::schemes::Bounds| {
-        let end = |end: &Option<willis::exact::Rational>| end.as_ref().map_or_else(String::new, |x| significant(x.to_f64(), 5));
+        let end = |end: &Option<willis::exact::Rational>| {
+            end.as_ref().map_or_else(String::new, |x| significant(x.to_f64(), 5))
+        };
         let is_open = bounds.min.is_none() && bounds.max.is_none();
         (!is_open).then(|| format!("{name} {}..{}", end(&bounds.min), end(&bounds.max)))
     };
@@ -99,10 +101,8 @@ fn limits(wish: &Wish) -> String {
 
 fn counts(all: &Schemes) -> String {
     let (space, found) = (&all.space, &all.found);
-    let mut out = fact(
-        "layouts",
-        &format!("{} examined of {}, {} with a scheme", space.examined, space.layouts, found.layouts),
-    );
+    let mut out =
+        fact("layouts", &format!("{} examined of {}, {} with a scheme", space.examined, space.layouts, found.layouts));
     out += &fact("choices", &format!("{} of elements that differ in what they do", space.choices));
     let classes = "by what the elements do, wherever they stand";
     out += &fact("schemes", &format!("{} in {} classes {classes}", found.schemes, found.classes));
@@ -333,7 +333,8 @@ pub fn hybrids(all: &Hybrids) -> String {
         t.add_row(row);
     }
     right(&mut t, 0..1);
-    let what = "engine, output and motors A, B stand on these suns, rings, carriers; same: other places of the clutches";
+    let what =
+        "engine, output and motors A, B stand on these suns, rings, carriers; same: other places of the clutches";
     out += &format!("\n{}   {}\n{}", bold("Designs"), dim(what), show(&t));
     out += &more(shown.len(), all.designs.len());
     let first = &all.designs[0];
