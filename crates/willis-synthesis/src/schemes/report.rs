@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::Diagnostics;
 use willis::exact::Rational;
-use willis::work::Work;
+use willis::work::{Effort, Work};
 
 use super::harvest::Harvest;
 use super::known::{Known, Rediscovered};
@@ -232,11 +232,13 @@ impl Schemes {
         }
     }
 
-    /// For an empty answer: what there is where one rule of the wish gives way, each found by a search of its own. One that
-    /// would take too long for the surroundings, or was stopped, is listed with the reason.
+    /// For an empty answer: what there is where one rule of the wish gives way, each found by a search of its own. What
+    /// is not searched, because all of them would take too long for the surroundings or were stopped, is listed with the
+    /// reason.
     pub fn relax(&mut self, work: &dyn Work) {
+        let mut seconds = 0.0;
         for (change, wish) in relaxed(&self.wish) {
-            self.relaxations.push(match relaxation(&wish, work) {
+            self.relaxations.push(match relaxation(&wish, work, &mut seconds) {
                 Ok((schemes, until)) => SchemeRelaxation { change, schemes: Some(schemes), until, reason: None },
                 Err(why) => SchemeRelaxation { change, schemes: None, until: None, reason: Some(why) },
             });
@@ -245,10 +247,14 @@ impl Schemes {
 }
 
 /// How many schemes there are, and how far the first goes in what the wish orders by.
-fn relaxation(wish: &Wish, work: &dyn Work) -> Result<(u64, Option<f64>), String> {
+fn relaxation(wish: &Wish, work: &dyn Work, seconds: &mut f64) -> Result<(u64, Option<f64>), String> {
     let first = |wrong: Diagnostics| wrong.iter().next().map_or_else(String::new, |d| d.message.clone());
     let search = Search::new(wish).map_err(first)?;
-    search.afford(work).map_err(first)?;
+    // All of them together.
+    let effort = search.effort();
+    work.afford(&Effort { seconds: *seconds + effort.seconds, ..effort })
+        .map_err(|why| format!("not searched, {why}"))?;
+    *seconds += effort.seconds;
     let mut harvest = Harvest::default();
     search.harvest(work, 0..search.parts(), &mut harvest);
     if harvest.done() < search.parts() {

@@ -44,7 +44,8 @@ pub fn schemes(all: &Schemes) -> String {
         let said = match (known.found, known.row) {
             (false, _) => format!("{} does not do what is wanted with these tooth ratios", known.name),
             (true, Some(row)) => format!("{} is row {row}", known.name),
-            (true, None) => format!("{} is among them, not in the rows shown", known.name),
+            (true, None) if all.completeness.complete => format!("{} is among them, not in the rows shown", known.name),
+            (true, None) => format!("{} does what is wanted, in this part of the space or another", known.name),
         };
         out += &format!("\n{}\n", bold("Known transmission"));
         out += &wrap(&format!("{said}: {}", known.source), "  · ");
