@@ -7,7 +7,6 @@ use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 
 use super::layout::Layout;
-use super::search::Search;
 
 /// How many layouts and choices of elements came how far.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -120,59 +119,6 @@ impl Harvest {
     /// As JSON, for [`Harvest::read`].
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).expect("plain data") + "\n"
-    }
-
-    /// Reads what was kept of a search.
-    ///
-    /// # Errors
-    /// It is none, it is spoilt, or it is that of another search.
-    pub fn read(text: &str, search: &Search) -> Result<Self, Diagnostics> {
-        let own: Self = parse(text)?;
-        fits(&own.wish, &search.name(), &own.done, search.parts())?;
-        own.sound(search).then_some(()).ok_or_else(spoilt)?;
-        Ok(own)
-    }
-
-    /// Whether its numbers can come from a search.
-    fn sound(&self, search: &Search) -> bool {
-        let Tally { choices, enough, chain, reverse, attached, minimal, limits, schemes, .. } = self.tally;
-        let stages = [choices, enough, chain, reverse];
-        let rules = [attached, minimal, limits, schemes];
-        let wish = search.wish();
-        let brakes = self.tally.by_brakes.iter().try_fold(0_u64, |sum, (_, n)| sum.checked_add(*n));
-        let row = |row: &Row| {
-            let own = [row.layout.sets(), row.layout.shafts(), row.elements.len()];
-            let is_last = |e: &[u8; 2]| e[0] < e[1] && usize::from(e[1]) < row.layout.shafts();
-            own == [wish.sets.len(), wish.shafts() + 1, wish.elements]
-                && row.elements.iter().all(is_last)
-                && row.elements.is_sorted()
-                && row.key.is_finite()
-                && wish.layout.is_none_or(|layout| layout == row.layout)
-        };
-        stages.is_sorted_by(|a, b| a >= b)
-            && rules.is_sorted_by(|a, b| a >= b)
-            && brakes == Some(schemes)
-            && self.tally.classes <= schemes
-            && self.rows.len() as u64 == schemes.min(wish.top as u64)
-            && self.rows.iter().all(row)
-    }
-
-    /// Adds what other parts of the same search have found.
-    ///
-    /// # Errors
-    /// It belongs to another wish, or a part is in both.
-    pub fn merge(&mut self, search: &Search, other: Self) -> Result<(), Diagnostics> {
-        apart(&self.done, &other.done)?;
-        for one in [&*self, &other] {
-            fits(&one.wish, &search.name(), &one.done, search.parts())?;
-        }
-        self.wish = search.name();
-        self.done.extend(other.done);
-        self.done.sort_unstable();
-        self.tally.add(&other.tally);
-        self.rows.extend(other.rows);
-        search.keep_best(&mut self.rows);
-        Ok(())
     }
 }
 

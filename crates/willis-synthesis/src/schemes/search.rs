@@ -7,7 +7,7 @@ use willis::exact::Rational;
 use willis::work::{Effort, Work};
 
 use super::choose::{Chooser, Found, Goal, has_spare};
-use super::harvest::{Harvest, Row};
+use super::harvest::{Harvest, Row, Tally, apart, fits, parse, spoilt};
 use super::layout::{GROUND, INPUT, Layout, Layouts, MAX_SHAFTS, OUTPUT, Prefix, count_layouts};
 use super::measure;
 use super::motion::{self, Motion};
@@ -55,6 +55,61 @@ pub struct Search {
     parts: Vec<Prefix>,
     /// Other orders of the sets, in which those with one tooth ratio are exchanged.
     orders: Vec<Vec<usize>>,
+}
+
+impl Harvest {
+    /// Reads what was kept of a search.
+    ///
+    /// # Errors
+    /// It is none, it is spoilt, or it is that of another search.
+    pub fn read(text: &str, search: &Search) -> Result<Self, Diagnostics> {
+        let own: Self = parse(text)?;
+        fits(&own.wish, &search.name(), &own.done, search.parts())?;
+        own.sound(search).then_some(()).ok_or_else(spoilt)?;
+        Ok(own)
+    }
+
+    /// Whether its numbers can come from a search.
+    fn sound(&self, search: &Search) -> bool {
+        let Tally { choices, enough, chain, reverse, attached, minimal, limits, schemes, .. } = self.tally;
+        let stages = [choices, enough, chain, reverse];
+        let rules = [attached, minimal, limits, schemes];
+        let wish = search.wish();
+        let brakes = self.tally.by_brakes.iter().try_fold(0_u64, |sum, (_, n)| sum.checked_add(*n));
+        let row = |row: &Row| {
+            let own = [row.layout.sets(), row.layout.shafts(), row.elements.len()];
+            let is_last = |e: &[u8; 2]| e[0] < e[1] && usize::from(e[1]) < row.layout.shafts();
+            own == [wish.sets.len(), wish.shafts() + 1, wish.elements]
+                && row.elements.iter().all(is_last)
+                && row.elements.is_sorted()
+                && row.key.is_finite()
+                && wish.layout.is_none_or(|layout| layout == row.layout)
+        };
+        stages.is_sorted_by(|a, b| a >= b)
+            && rules.is_sorted_by(|a, b| a >= b)
+            && brakes == Some(schemes)
+            && self.tally.classes <= schemes
+            && self.rows.len() as u64 == schemes.min(wish.top as u64)
+            && self.rows.iter().all(row)
+    }
+
+    /// Adds what other parts of the same search have found.
+    ///
+    /// # Errors
+    /// It belongs to another wish, or a part is in both.
+    pub fn merge(&mut self, search: &Search, other: Self) -> Result<(), Diagnostics> {
+        apart(&self.done, &other.done)?;
+        for one in [&*self, &other] {
+            fits(&one.wish, &search.name(), &one.done, search.parts())?;
+        }
+        self.wish = search.name();
+        self.done.extend(other.done);
+        self.done.sort_unstable();
+        self.tally.add(&other.tally);
+        self.rows.extend(other.rows);
+        search.keep_best(&mut self.rows);
+        Ok(())
+    }
 }
 
 impl Search {
