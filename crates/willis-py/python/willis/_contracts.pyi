@@ -4133,7 +4133,7 @@ class SchemesSchemeStage(Record):
     def left(self) -> int:
         """What is left."""
 
-class SchemesFoundSchemes2(Record):
+class SchemesFoundSchemes(Record):
     """How many schemes there are."""
     @property
     def layouts(self) -> int:
@@ -4369,7 +4369,7 @@ class SchemesAnswer(Answer):
     def waterfall(self) -> list[SchemesSchemeStage]:
         """What each rule left, in the order in which they are applied."""
     @property
-    def found(self) -> SchemesFoundSchemes2:
+    def found(self) -> SchemesFoundSchemes:
         """What was found."""
     @property
     def schemes(self) -> list[SchemesScheme]:
