@@ -117,13 +117,26 @@ pub struct Schemes {
 }
 
 /// Shift schemes, or hybrids, with what a search can go on from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum SchemesAnswer {
     /// `willis-schemes-1`.
     Schemes(Box<SchemeResult>),
     /// `willis-hybrids-1`.
     Hybrids(Box<HybridResult>),
+}
+
+impl<'de> Deserialize<'de> for SchemesAnswer {
+    /// By its format, which says what it is. Tried one after the other, counts by number could not be read.
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = serde_json::Value::deserialize(deserializer)?;
+        let format = value.get("format").and_then(serde_json::Value::as_str);
+        let read = match format == Some(Hybrids::FORMAT) {
+            true => serde_json::from_value(value).map(Self::Hybrids),
+            false => serde_json::from_value(value).map(Self::Schemes),
+        };
+        read.map_err(serde::de::Error::custom)
+    }
 }
 
 impl Contract for SchemesAnswer {
