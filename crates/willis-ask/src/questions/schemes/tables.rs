@@ -32,7 +32,7 @@ fn rows(all: &Schemes) -> Table {
             ("elements", Text),
             ("brakes", Integer),
             ("ratios", Text),
-            ("spread", Number),
+            ("ratio_spread", Number),
             ("largest_step", Number),
             ("lowest_efficiency", Number),
             ("largest_torque_factor", Number),
