@@ -145,6 +145,12 @@ True
 >>> "frequency_hz" in modes
 True
 """,
+    "schemes": """
+>>> wish = {"elements": 4, "closed": 2, "forward": 3, "step": "1.15..2.2", "forward_range": "0.5..5", "reverse_range": "1.2..5"}
+>>> found = willis.schemes(sets=2, **wish)
+>>> found.data.found.schemes, found.data.completeness.complete
+(653, True)
+""",
     "draw": """
 >>> willis.read("examples/zf-8hp70.toml").draw("lever", state="3").svg[:4]
 '<svg'

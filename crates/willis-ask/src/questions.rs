@@ -26,6 +26,8 @@ mod parts;
 mod regimes;
 #[cfg(feature = "pictures")]
 mod report;
+#[cfg(feature = "synthesis")]
+mod schemes;
 mod sensitivity;
 mod simulate;
 mod sweep;
@@ -56,6 +58,8 @@ pub use new::New;
 pub use regimes::{Regimes, RegimesAnswer};
 #[cfg(feature = "pictures")]
 pub use report::Report;
+#[cfg(feature = "synthesis")]
+pub use schemes::{HybridResult, SchemeResult, Schemes, SchemesAnswer};
 pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, MOST_KEPT, Simulate, run_text as simulation_text, tell_of_events_left_out};
 pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
@@ -88,6 +92,8 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Modes>(),
     #[cfg(feature = "synthesis")]
     Entry::of::<Design>(),
+    #[cfg(feature = "synthesis")]
+    Entry::of::<Schemes>(),
     #[cfg(feature = "pictures")]
     Entry::of::<Draw>(),
     #[cfg(feature = "pictures")]

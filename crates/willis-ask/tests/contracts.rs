@@ -46,6 +46,17 @@ fn requests_without_train(entry: &Entry) -> Vec<Value> {
                 json!({ "like": file("fva-planetary-stage.toml"), "tolerance": "0.02" }),
             ]
         }
+        "schemes" => {
+            let two =
+                json!({ "sets": 2, "elements": 4, "closed": 2, "forward": 3, "rediscover": "gm", "order": "spread" });
+            let none = json!({ "sets": 1, "elements": 2, "closed": 1, "forward": 2, "step": "9..10" });
+            vec![
+                json!({}),
+                two,
+                none,
+                json!({ "hybrid": true, "sets": 2, "clutches": 3, "need": ["input-split", "fixed"] }),
+            ]
+        }
         _ => vec![json!({})],
     }
 }

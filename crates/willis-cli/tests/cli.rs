@@ -1420,6 +1420,50 @@ fn rows_written_before_a_full_disk_stay() {
     std::fs::remove_dir_all(&folder).expect("removed");
 }
 
+// ---- schemes ---------------------------------------------------------------------------------
+
+#[test]
+fn schemes_are_found_written_and_gone_on_with() {
+    let folder = folder("schemes");
+    let file = |name: &str| folder.join(name).to_str().expect("text").to_owned();
+    let wish = "--k 62/26,74/42 --elements 5 --closed 2 --forward 4 --forward-range 0.5..5 --step 1.15..2.2 --reverse-range 1.2..5";
+    let ask = |more: &[&str]| -> Vec<String> {
+        ["schemes"].into_iter().chain(wish.split(' ')).chain(more.iter().copied()).map(str::to_owned).collect()
+    };
+    let run = |more: &[&str]| run(&ask(more).iter().map(String::as_str).collect::<Vec<_>>());
+    let whole = text(&run(&[]).stdout);
+    assert!(whole.contains("  schemes      350 in 146 classes"), "{whole}");
+    assert!(whole.contains("nothing else") && whole.contains("●"), "{whole}");
+    // Two machines, and one that puts together what they keep.
+    for k in ["1", "2"] {
+        let (shard, kept) = (format!("{k}/2"), file(&format!("{k}.json")));
+        let output = run(&["--shard", &shard, "--progress", &kept]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    }
+    let output = run(&["--resume", &file("1.json"), "--resume", &file("2.json")]);
+    assert_eq!(text(&output.stdout), whole);
+    let twice = run(&["--resume", &file("1.json"), "--resume", &file("1.json")]);
+    assert!(refused(&twice, 1).contains("is in both results"));
+    // Rows as files, which another command takes; a picture beside the answer.
+    let output = run(&["--write", "1,3", "-o", &file("rows"), "--plot", &file("rows.svg")]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for row in [1, 3] {
+        let analysis = answered(&["analyze", &file(&format!("rows/scheme-{row}.toml"))]);
+        assert!(analysis.contains("unique, proved"), "{analysis}");
+    }
+    assert!(std::fs::read_to_string(file("rows.svg")).expect("written").contains("Row 3"));
+    assert!(refused(&run(&["--write", "1,3"]), 1).contains("name a folder"));
+    assert!(refused(&run(&["--layout", "nowhere.toml"]), 1).contains("nowhere.toml"));
+    let large = run_large();
+    assert!(large.contains("18428400 layouts") && large.contains("`yes`"), "{large}");
+    std::fs::remove_dir_all(&folder).expect("removed");
+}
+
+/// A space that takes hours.
+fn run_large() -> String {
+    refused(&run(&["schemes", "--sets", "4", "--elements", "5", "--closed", "3", "--forward", "8"]), 1)
+}
+
 // ---- modes -----------------------------------------------------------------------------------
 
 /// Two rotors, one geared to a third, on an elastic shaft.

@@ -20,13 +20,17 @@
 //! crossing.
 
 mod choose;
+mod harvest;
 mod hybrid;
+mod hybrid_file;
 mod known;
 mod layout;
 mod measure;
 mod motion;
 mod planar;
 mod points;
+mod rate;
+mod read;
 mod report;
 mod scheme;
 mod search;
@@ -35,10 +39,11 @@ mod train_file;
 mod wish;
 
 pub use choose::MAX_ELEMENTS;
-pub use hybrid::{HybridDesign, HybridMode, HybridWish, Hybrids, ModeKind, hybrids};
-pub use known::{KNOWN, Known, Rediscovered};
+pub use harvest::Harvest;
+pub use hybrid::{HybridDesign, HybridHarvest, HybridMode, HybridSearch, HybridWish, Hybrids, ModeKind, hybrids};
+pub use known::{KNOWN, Known, Rediscovered, usual_ratios};
 pub use layout::{GROUND, INPUT, Layout, Layouts, MAX_SETS, NoLayout, OUTPUT, Prefix, count_layouts};
-pub use report::{Completeness, FoundSchemes, Relaxation, SchemeSpace, Schemes, Stage};
+pub use report::{FoundSchemes, SchemeCompleteness, SchemeRelaxation, SchemeSpace, SchemeStage, Schemes};
 pub use scheme::{Scheme, SchemeElement, SchemeGear, SchemeShaft};
-pub use search::{Harvest, Search};
+pub use search::Search;
 pub use wish::{Bounds, Order, SetRatio, Wish};

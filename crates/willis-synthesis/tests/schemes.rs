@@ -213,9 +213,9 @@ fn an_empty_answer_says_what_must_give_way() {
     let wish = wish(&TWO_SETS, [4, 2, 4], ["1/2..5", "1.15..1.2", "1.2..5"]);
     let mut answer = run(&wish);
     assert_eq!(answer.found.schemes, 0);
-    answer.relax(&Serial).unwrap();
+    answer.relax(&Serial);
     let step = answer.relaxations.iter().find(|r| r.change.starts_with("steps of any size")).unwrap();
-    assert!(step.schemes > 0, "{:?}", answer.relaxations);
+    assert!(step.schemes.unwrap() > 0, "{:?}", answer.relaxations);
 }
 
 #[test]

@@ -64,6 +64,12 @@ pub fn in_columns(data: &Stick, columns: &Columns, height: f64) -> String {
     sheet.scheme(false).into_iter().fold(page, Document::add).to_string()
 }
 
+/// The same with the names of its sets, to be put on a sheet; its width and height.
+pub(crate) fn scheme_of(data: &Stick, columns: &Columns, height: f64) -> (Group, [f64; 2]) {
+    let sheet = Sheet::in_columns(data, columns, height);
+    (sheet.scheme(true).into_iter().fold(Group::new(), Group::add), [sheet.width, sheet.height])
+}
+
 fn subtitle(data: &Stick) -> String {
     let shown = data.members.iter().any(|m| m.loaded == Some(true));
     let circle = data.members.iter().flat_map(|m| &m.pieces).any(|p| p.circulates);

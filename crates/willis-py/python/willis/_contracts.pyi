@@ -4052,6 +4052,356 @@ class ModesAnswer(Answer):
     def assumptions(self) -> list[str]:
         """What stands in for data that were not given."""
 
+class SchemesHybridWish(Record):
+    """What a hybrid must do.
+
+    # Example `````` use willis::work::Serial; use willis_synthesis::schemes::{HybridWish, ModeKind, hybrids};
+
+    let wish = HybridWish::new(&["17/10", "23/10"], 3, &["input-split", "compound-split", "electric", "fixed"])?;
+    let answer = hybrids(&wish, &Serial)?; assert_eq!((answer.layouts, answer.kinematic, answer.designs_found),
+    (900, 2088, 3240)); assert_eq!(answer.modes[&ModeKind::CompoundSplit], 864); # Ok::<(), Box<dyn
+    std::error::Error>>(()) ``````"""
+    @property
+    def sets(self) -> list[str]:
+        """The tooth ratio of each set."""
+    @property
+    def clutches(self) -> int:
+        """Clutches and brakes."""
+    @property
+    def mobility(self) -> int:
+        """Freedoms with no clutch closed."""
+    @property
+    def need(self) -> list[Literal["input-split", "output-split", "compound-split", "input-and-output-geared", "engine-geared-to-output", "motors-geared-together", "one-at-rest", "fixed", "fixed-with-motor", "electric", "charging", "nothing"]]:
+        """Modes that there must be. ``fixed`` is met by a fixed gear in which a motor turns, too."""
+    @property
+    def top(self) -> int:
+        """How many designs are shown."""
+
+class SchemesSchemeSpace(Record):
+    """The space that was searched."""
+    @property
+    def sets(self) -> int:
+        """Sets of the train."""
+    @property
+    def shafts(self) -> int:
+        """Shafts besides the housing."""
+    @property
+    def layouts(self) -> int:
+        """Layouts of the space, whether or not they were reached."""
+    @property
+    def examined(self) -> int:
+        """Layouts that were examined."""
+    @property
+    def choices(self) -> int:
+        """Choices of elements in these layouts, no two elements kinematically the same: each was examined, or excluded
+        by the number of its states that can be gears."""
+
+class SchemesSchemeCompleteness(Record):
+    """How much of the space the answer covers."""
+    @property
+    def complete(self) -> bool:
+        """Whether it is all of it."""
+    @property
+    def parts(self) -> int:
+        """Parts of the work."""
+    @property
+    def asked(self) -> int:
+        """Parts that were asked for: all, or those of a share."""
+    @property
+    def done(self) -> int:
+        """Parts that are done."""
+    @property
+    def share(self) -> float:
+        """The share of the parts that is done."""
+    @property
+    def sample(self) -> int:
+        """One of so many layouts was examined."""
+    @property
+    def statement(self) -> str:
+        """All of this in words."""
+
+class SchemesSchemeStage(Record):
+    """How many choices of elements are left after a rule."""
+    @property
+    def rule(self) -> str:
+        """The rule: ``choices``, ``states``, ``chain``, ``reverse``, ``attached``, ``minimal``, ``limits``,
+        ``planar``."""
+    @property
+    def about(self) -> str:
+        """What it asks, in words."""
+    @property
+    def left(self) -> int:
+        """What is left."""
+
+class SchemesFoundSchemes(Record):
+    """How many schemes there are."""
+    @property
+    def layouts(self) -> int:
+        """Layouts that have a scheme."""
+    @property
+    def schemes(self) -> int:
+        """Schemes."""
+    @property
+    def classes(self) -> int:
+        """Schemes that differ in more than the place of an element that does the same to all speeds."""
+    @property
+    def by_brakes(self) -> Any:
+        """Schemes by their number of brakes."""
+
+class SchemesSchemeShaft(Record):
+    """A shaft of a scheme."""
+    @property
+    def name(self) -> str:
+        """``input``, ``output``, ``housing``, or what it carries: ``r2s3`` is ring 2 and sun 3."""
+    @property
+    def digit(self) -> str:
+        """Its digit in the name of the layout."""
+    @property
+    def members(self) -> list[str]:
+        """The members of sets that belong to it."""
+
+class SchemesSchemeElement(Record):
+    """A clutch or a brake of a scheme."""
+    @property
+    def name(self) -> str:
+        """``A``, ``B``, …: brakes first."""
+    @property
+    def kind(self) -> Literal["clutch", "brake", "one-way"]:
+        """Clutch or brake."""
+    @property
+    def joins(self) -> list[str]:
+        """The shafts that it joins; for a brake the housing and one shaft."""
+    @property
+    def same(self) -> list[list[str]]:
+        """Other places at which an element does the same to all speeds: each joins two shafts."""
+    @property
+    def max_torque(self) -> float:
+        """The largest modulus of its torque in the gears shown, per torque of the input, without losses."""
+    @property
+    def max_slip(self) -> float:
+        """The largest modulus of its slip in the gears shown, per speed of the input."""
+
+class SchemesSchemeGear(Record):
+    """A gear of a scheme. Speeds are per speed of the input, torques per torque of the input and without losses."""
+    @property
+    def name(self) -> str:
+        """``1``, ``2``, …, ``R``; other states that have a ratio are named after what they close."""
+    @property
+    def closed(self) -> list[str]:
+        """The closed elements."""
+    @property
+    def ratio(self) -> str:
+        """Speed of the input over speed of the output."""
+    @property
+    def value(self) -> float:
+        """The same as a number."""
+    @property
+    def step(self) -> float | None:
+        """The ratio over that of the next gear."""
+    @property
+    def speeds(self) -> Named[float]:
+        """Speed of every shaft."""
+    @property
+    def planets(self) -> Named[float]:
+        """Speed of the planets of every set relative to their carrier."""
+    @property
+    def torques(self) -> Named[float]:
+        """Torque of every closed element on the first of its shafts. Zero: it carries nothing."""
+    @property
+    def slips(self) -> Named[float]:
+        """Slip of every open element, the speed of the first of its shafts less that of the second."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power when the input drives, of the scheme's train file with the mesh efficiencies that it
+        has ([``Schemes::rate``](super::Schemes::rate))."""
+    @property
+    def no_efficiency(self) -> str | None:
+        """Why there is no efficiency."""
+
+class SchemesScheme(Record):
+    """A shift scheme: a layout with elements, and what it does.
+
+    # Example `````` use willis_synthesis::schemes::{Scheme, Wish};
+
+    let wish = Wish { layout: None, ..Wish::new(&["96/48", "96/48", "111/69", "85/23"], 5, 3, 8)? }; let elements =
+    [[2, 3], [2, 4], [0, 7], [1, 8], [6, 7]]; let zf = Scheme::new(&wish, "345360678751".parse()?,
+    &elements).unwrap(); assert_eq!(zf.gears[0].ratio.to_string(), "108/23"); assert_eq!(zf.gears[0].closed.join("
+    "), "A B C"); // The train file has the same ratios, exactly. let train =
+    willis::Train::from_toml(&zf.to_toml())?; let analysis = willis::analyze(&train,
+    &willis::Selection::default())?; assert_eq!(analysis.ratios.get("1").unwrap().exact.as_ref(),
+    Some(&zf.gears[0].ratio)); # Ok::<(), Box<dyn std::error::Error>>(()) ``````"""
+    @property
+    def id(self) -> str:
+        """Its name: layout, and the digits of the shafts that each element joins: ``345360678751 07 18 23 24 67``."""
+    @property
+    def known(self) -> str | None:
+        """The known transmission that it is."""
+    @property
+    def layout(self) -> str:
+        """The layout."""
+    @property
+    def sets(self) -> list[str]:
+        """The tooth ratio of every set."""
+    @property
+    def shafts(self) -> list[SchemesSchemeShaft]:
+        """The shafts, in the order of the layout's digits."""
+    @property
+    def elements(self) -> list[SchemesSchemeElement]:
+        """Brakes and clutches."""
+    @property
+    def brakes(self) -> int:
+        """How many of the elements are brakes."""
+    @property
+    def gears(self) -> list[SchemesSchemeGear]:
+        """The longest chain of forward gears."""
+    @property
+    def reverse(self) -> list[SchemesSchemeGear]:
+        """Reverse gears."""
+    @property
+    def others(self) -> list[SchemesSchemeGear]:
+        """Other states with a ratio."""
+    @property
+    def spread(self) -> float:
+        """Ratio of the first over that of the last gear."""
+    @property
+    def max_speed(self) -> float:
+        """The largest modulus of a shaft's speed in the gears and in reverse, per speed of the input."""
+    @property
+    def max_torque(self) -> float:
+        """The largest modulus of an element's torque there, per torque of the input."""
+    @property
+    def planar(self) -> bool:
+        """Whether it can be drawn with nested shafts and without a crossing: the graph of sets, shafts and elements,
+        with housing, input and output on its outer face, is planar."""
+
+class SchemesSchemeRelaxation(Record):
+    """What there would be if one rule gave way."""
+    @property
+    def change(self) -> str:
+        """What gives way, in words."""
+    @property
+    def schemes(self) -> int | None:
+        """How many schemes there are then; absent where that was not searched."""
+    @property
+    def until(self) -> float | None:
+        """How far it must give way for the first of them: the smallest largest step, speed or torque that there is."""
+    @property
+    def reason(self) -> str | None:
+        """Why it was not searched."""
+
+class SchemesRediscovered(Record):
+    """Whether a known transmission is among the schemes that are wanted."""
+    @property
+    def name(self) -> str:
+        """What it is called."""
+    @property
+    def source(self) -> str:
+        """Where its connections come from."""
+    @property
+    def found(self) -> bool:
+        """Whether it does what is wanted, with the tooth ratios of the wish."""
+    @property
+    def row(self) -> int | None:
+        """Where it stands among the schemes that are shown, from 1, if it is one of them."""
+    @property
+    def scheme(self) -> SchemesScheme | None:
+        """As a scheme of the space that was searched, if it does."""
+
+class SchemesHybridMode(Record):
+    """A mode of a hybrid."""
+    @property
+    def kind(self) -> Literal["input-split", "output-split", "compound-split", "input-and-output-geared", "engine-geared-to-output", "motors-geared-together", "one-at-rest", "fixed", "fixed-with-motor", "electric", "charging", "nothing"]:
+        """What it is."""
+    @property
+    def closed(self) -> list[str]:
+        """The clutches that are closed."""
+    @property
+    def turning(self) -> list[str]:
+        """Which of ``engine``, ``output``, ``A`` and ``B`` can turn."""
+    @property
+    def mechanical_points(self) -> list[str]:
+        """Two freedoms: ratios of engine to output speed at which a motor is at rest and all power passes through
+        gears (mechanical points), motor A first."""
+    @property
+    def ratio(self) -> str | None:
+        """One freedom: the ratio of engine to output speed, if both turn."""
+
+class SchemesHybridDesign(Record):
+    """A hybrid: a layout with clutches, and its modes."""
+    @property
+    def id(self) -> str:
+        """Its name: layout, and the digits of the shafts that each clutch joins."""
+    @property
+    def layout(self) -> str:
+        """The layout; 0 is the engine, 1 the output, 2 the housing, 3 and 4 are the motors."""
+    @property
+    def sets(self) -> list[str]:
+        """The tooth ratio of every set."""
+    @property
+    def shafts(self) -> list[str]:
+        """What the shafts are called, by digit: ``engine``, ``output``, ``housing``, ``A``, ``B``, and what others
+        carry."""
+    @property
+    def clutches(self) -> list[list[str]]:
+        """The shafts that each clutch joins: ``C1``, ``C2``, …"""
+    @property
+    def same(self) -> int:
+        """Other choices of clutches that have the same modes with the same speeds."""
+    @property
+    def modes(self) -> list[SchemesHybridMode]:
+        """The modes that are of use."""
+
+class SchemesAnswer(Answer):
+    """Shift schemes, or hybrids, with what a search can go on from."""
+    @property
+    def format(self) -> Literal["willis-hybrids-1"]:
+        """``willis-hybrids-1``."""
+    @property
+    def wish(self) -> SchemesHybridWish:
+        """What was wanted."""
+    @property
+    def space(self) -> SchemesSchemeSpace:
+        """What was searched."""
+    @property
+    def completeness(self) -> SchemesSchemeCompleteness:
+        """How much of the space the answer covers."""
+    @property
+    def waterfall(self) -> list[SchemesSchemeStage]:
+        """What each rule left, in the order in which they are applied."""
+    @property
+    def found(self) -> SchemesFoundSchemes:
+        """What was found."""
+    @property
+    def schemes(self) -> list[SchemesScheme]:
+        """The first schemes in the order of the wish, confirmed by rational arithmetic."""
+    @property
+    def relaxations(self) -> list[SchemesSchemeRelaxation]:
+        """If nothing was found: what there is where one rule gives way."""
+    @property
+    def rediscovered(self) -> SchemesRediscovered | None:
+        """The known transmission that was asked for."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What was taken where nothing was said."""
+    @property
+    def layouts(self) -> int:
+        """Layouts, with the motors exchanged counted once."""
+    @property
+    def modes(self) -> Named[int]:
+        """Modes of all layouts by their kind, with clutches that do the same counted once."""
+    @property
+    def choices(self) -> int:
+        """Choices of clutches that differ in what they do."""
+    @property
+    def kinematic(self) -> int:
+        """Of these, those that have the modes that are needed."""
+    @property
+    def designs_found(self) -> int:
+        """The same with every place for the clutches."""
+    @property
+    def designs(self) -> list[SchemesHybridDesign]:
+        """The first designs in the order of layouts, one for all places of its clutches that do the same."""
+
 class DrawStickBlock(Record):
     """Planets on one carrier with their gears, or one ordinary pair."""
     @property

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from . import _contracts as contracts
     from ._train import Train
 
-__all__ = ["new", "laws", "validate", "explain"]
+__all__ = ["new", "schemes", "laws", "validate", "explain"]
 
 
 class Questions:
@@ -1166,6 +1166,134 @@ def new(
             "new",
             [],
             {"kind": kind},
+            threads=threads,
+            yes=yes,
+            progress=progress,
+        ),
+    )
+
+
+def schemes(
+    *,
+    sets: int | None = None,
+    k: Sequence[str] | str | None = None,
+    layout: str | os.PathLike[str] | object | None = None,
+    elements: int | None = None,
+    closed: int | None = None,
+    forward: int | None = None,
+    reverse: int | None = None,
+    forward_range: str | None = None,
+    reverse_range: str | None = None,
+    step: str | None = None,
+    progressive: bool | None = None,
+    not_minimal: bool | None = None,
+    max_speed: str | None = None,
+    max_torque: str | None = None,
+    max_brakes: int | None = None,
+    planar: bool | None = None,
+    order: str | None = None,
+    top: int | None = None,
+    sample: int | None = None,
+    rediscover: str | None = None,
+    hybrid: bool | None = None,
+    clutches: int | None = None,
+    need: Sequence[str] | str | None = None,
+    mobility: int | None = None,
+    write: Sequence[int] | None = None,
+    shard: str | None = None,
+    resume: Sequence[str | os.PathLike[str] | object] | None = None,
+    threads: int | None = None,
+    yes: bool = False,
+    progress: bool | Progress | None = None,
+) -> "contracts.SchemesAnswer":
+    """Find all shift schemes: who is joined to whom, which elements close in which gear.
+
+    All layouts of so many simple planetary sets are searched with all choices of clutches and brakes; with
+    ``layout`` only the elements of one layout. In every gear as many elements are closed, from gear to gear one
+    opens and one closes. The answer is complete, and says so: how many choices there are, what each rule leaves of
+    them, and that there are no others. Where nothing is left it says which wish must give way, and how far. With
+    ``write`` a scheme becomes a train file that every other command takes.
+
+    With ``hybrid`` it finds trains of an engine, an output and two motors whose clutches make the modes that are
+    needed.
+
+    Parameters
+    ----------
+    sets
+        How many simple planetary sets. Default: as many as there are tooth ratios.
+    k
+        Tooth ratio of each set, ring over sun: 109/67,91/49,97/39. Fractions are the teeth of ring and sun. Default:
+        those of a known transmission with as many sets (2: GM 440-T4, 3: Allison 2000, 4: ZF 8HP70).
+    layout
+        Keep these permanent connections and search the elements: a train file, of which the tooth ratios are kept too,
+        or the digits of a layout, as in 345360678751.
+    elements
+        How many clutches and brakes.
+    closed
+        How many of them are closed in every gear. Default, with a layout: as many as leave one freedom.
+    forward
+        How many forward gears.
+    reverse
+        How many reverse gears. Default: 1.
+    forward_range
+        The ratios of forward gears lie here: 0.5..6; an end may be left out.
+    reverse_range
+        The ratios of reverse gears, without their sign, lie here: 1.5..7.
+    step
+        The steps, each a ratio over that of the next gear, lie here: 1.1..2.2.
+    progressive
+        No step is larger than the one before it.
+    not_minimal
+        Schemes with an element that can be left out count too.
+    max_speed
+        No shaft turns faster, per speed of the input: 3.5.
+    max_torque
+        No element carries more, per torque of the input and without losses: 4.
+    max_brakes
+        At most so many of the elements are brakes.
+    planar
+        Only schemes that can be drawn with nested shafts and without a crossing.
+    order
+        Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest).
+        Default: found.
+    top
+        How many are shown. Default: 10, or as many as ``write`` names.
+    sample
+        Examine one of so many layouts: a sample, in which nothing is complete.
+    rediscover
+        Say whether this known transmission is among the schemes: gm-440-t4, allison-2000, zf-8hp70.
+    hybrid
+        Search for hybrids.
+    clutches
+        How many clutches and brakes a hybrid has.
+    need
+        Modes that a hybrid must have, with commas between: input-split, output-split, compound-split, electric, fixed,
+        ...
+    mobility
+        Freedoms of a hybrid with no clutch closed. Default: 3.
+    write
+        Write the train files of these rows: 3, or 1,2,5 with a folder as ``output``.
+    shard
+        Search only this part of the space: 3/16. ``progress`` keeps what it finds.
+    resume
+        Go on from what ``progress`` kept of the same wish; a list for several parts.
+    threads, yes, progress
+        Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+        called with a word, how much is done and how much there is.
+
+    Examples
+    --------
+    >>> wish = {"elements": 4, "closed": 2, "forward": 3, "step": "1.15..2.2", "forward_range": "0.5..5", "reverse_range": "1.2..5"}
+    >>> found = willis.schemes(sets=2, **wish)
+    >>> found.data.found.schemes, found.data.completeness.complete
+    (653, True)
+    """
+    return cast(
+        "contracts.SchemesAnswer",
+        _ask(
+            "schemes",
+            [],
+            {"sets": sets, "k": k, "layout": layout, "elements": elements, "closed": closed, "forward": forward, "reverse": reverse, "forward_range": forward_range, "reverse_range": reverse_range, "step": step, "progressive": progressive, "not_minimal": not_minimal, "max_speed": max_speed, "max_torque": max_torque, "max_brakes": max_brakes, "planar": planar, "order": order, "top": top, "sample": sample, "rediscover": rediscover, "hybrid": hybrid, "clutches": clutches, "need": need, "mobility": mobility, "write": write, "shard": shard, "resume": resume},
             threads=threads,
             yes=yes,
             progress=progress,

@@ -51,8 +51,11 @@ def _field(question: str, name: str, value: Any) -> Any:
         return _quantity.one(value, _QUANTITIES[name])
     if name in ("state", "operation", "scenario") and isinstance(value, int):
         return str(value)
-    if name in ("profile", "data"):
+    if name in ("profile", "data", "layout"):
         return _attachment(name, value)
+    if name == "resume":
+        files = [value] if isinstance(value, (str, os.PathLike)) else value
+        return [_attachment(name, file) for file in files]
     if isinstance(value, enum.Enum):
         return value.value
     if isinstance(value, str) and name in _LISTS:
@@ -72,7 +75,9 @@ _LISTS = {
     "fixed",
     "from",
     "ignore_column",
+    "k",
     "laws",
+    "need",
     "offset",
     "only_column",
     "parts",

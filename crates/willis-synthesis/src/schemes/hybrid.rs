@@ -9,16 +9,19 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
+use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
-use willis::work::{Effort, Work, map};
+use willis::work::{Cancelled, Effort, Work};
 
+use super::harvest;
 use super::layout::{GROUND, Layout, Layouts, OUTPUT, Prefix, shaft_digit};
 use super::motion::{self, MAX_MOBILITY, Motion};
 use super::points::{Points, direction};
+use super::report::SchemeCompleteness;
 use super::table::binomial;
 use super::wish::SetRatio;
 use willis::exact::residue;
@@ -191,6 +194,8 @@ pub struct HybridMode {
     pub kind: ModeKind,
     /// The clutches that are closed.
     pub closed: Vec<String>,
+    /// Which of `engine`, `output`, `A` and `B` can turn.
+    pub turning: Vec<String>,
     /// Two freedoms: ratios of engine to output speed at which a motor is at rest and all power passes through gears
     /// (mechanical points), motor A first.
     pub mechanical_points: Vec<Rational>,
@@ -208,6 +213,8 @@ pub struct HybridDesign {
     pub id: String,
     /// The layout; 0 is the engine, 1 the output, 2 the housing, 3 and 4 are the motors.
     pub layout: String,
+    /// The tooth ratio of every set.
+    pub sets: Vec<SetRatio>,
     /// What the shafts are called, by digit: `engine`, `output`, `housing`, `A`, `B`, and what others carry.
     pub shafts: Vec<String>,
     /// The shafts that each clutch joins: `C1`, `C2`, …
@@ -227,6 +234,11 @@ pub struct Hybrids {
     pub format: Format<Self>,
     /// What was wanted.
     pub wish: HybridWish,
+    /// How much of the space the answer covers.
+    pub completeness: SchemeCompleteness,
+    /// What was taken where nothing was said.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assumptions: Vec<String>,
     /// Layouts, with the motors exchanged counted once.
     pub layouts: u64,
     /// Modes of all layouts by their kind, with clutches that do the same counted once.
@@ -237,8 +249,6 @@ pub struct Hybrids {
     pub kinematic: u64,
     /// The same with every place for the clutches.
     pub designs_found: u64,
-    /// All of this in words.
-    pub statement: String,
     /// The first designs in the order of layouts, one for all places of its clutches that do the same.
     pub designs: Vec<HybridDesign>,
 }
@@ -276,7 +286,7 @@ fn kind(mobility: usize, terminals: &[Vector; 4], closed: &[Vector]) -> Option<M
     }
     let [e, o, a, b] = *terminals;
     let with = |more: &[Vector]| rank(closed.iter().chain(more).copied()) - own;
-    let [turns_e, turns_o, turns_a, turns_b] = terminals.map(|t| with(&[t]) > 0);
+    let [turns_e, turns_o, turns_a, turns_b] = turning(terminals, closed);
     let together = |x: Vector, y: Vector| with(&[x, y]) < 2;
     Some(match mobility - own {
         1 => match (turns_e, turns_o, turns_a || turns_b) {
@@ -302,6 +312,12 @@ fn kind(mobility: usize, terminals: &[Vector; 4], closed: &[Vector]) -> Option<M
     })
 }
 
+/// Which of the terminals can turn with these clutches closed.
+fn turning(terminals: &[Vector; 4], closed: &[Vector]) -> [bool; 4] {
+    let own = rank(closed.iter().copied());
+    terminals.map(|t| rank(closed.iter().copied().chain([t])) > own)
+}
+
 /// The subsets of `0..n` of a size, in order.
 fn subsets(n: usize, size: usize) -> Vec<Vec<usize>> {
     let all = (0..1_u64 << n).filter(|s| s.count_ones() as usize == size);
@@ -312,88 +328,268 @@ fn space(wish: &HybridWish) -> Layouts {
     Layouts::with_terminals(wish.sets.len(), wish.mobility + wish.sets.len(), 5)
 }
 
+/// A search for hybrids, checked and cut into parts that are independent of each other.
+///
+/// # Example
+/// ```
+/// use willis::work::Serial;
+/// use willis_synthesis::schemes::{HybridHarvest, HybridSearch, HybridWish};
+///
+/// let search = HybridSearch::new(&HybridWish::new(&["17/10", "23/10"], 3, &["input-split", "fixed"])?)?;
+/// let (mut whole, mut rest) = (HybridHarvest::default(), HybridHarvest::default());
+/// search.harvest(&Serial, search.shard(0, 2), &mut whole);
+/// search.harvest(&Serial, search.shard(1, 2), &mut rest);
+/// whole.merge(&search, HybridHarvest::read(&rest.to_json(), &search)?)?;
+/// assert!(search.answer(&whole).completeness.complete);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct HybridSearch {
+    wish: HybridWish,
+    parts: Vec<Prefix>,
+}
+
+/// What parts of a search for hybrids have found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HybridHarvest {
+    /// `willis-hybrids-progress-1`.
+    format: Format<Self>,
+    /// What it belongs to: the wish as JSON.
+    wish: String,
+    /// Parts that are done, growing.
+    done: Vec<usize>,
+    found: Part,
+}
+
+impl Contract for HybridHarvest {
+    const FORMAT: &'static str = "willis-hybrids-progress-1";
+}
+
+impl HybridHarvest {
+    /// The parts that are done, growing.
+    pub fn parts(&self) -> &[usize] {
+        &self.done
+    }
+
+    /// As JSON, for [`HybridHarvest::read`].
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("plain data") + "\n"
+    }
+
+    /// Reads what was kept of a search.
+    ///
+    /// # Errors
+    /// It is none, it is spoilt, or it is that of another search.
+    pub fn read(text: &str, search: &HybridSearch) -> Result<Self, Diagnostics> {
+        let own: Self = harvest::parse(text)?;
+        harvest::fits(&own.wish, &search.name(), &own.done, search.parts.len())?;
+        let Part { choices, kinematic, hardware, designs, .. } = &own.found;
+        let shown = (*kinematic).min(search.wish.top as u64);
+        let is_done = |(part, design): &(usize, HybridDesign)| {
+            own.done.binary_search(part).is_ok() && design.clutches.len() == search.wish.clutches
+        };
+        let sound = kinematic <= choices && kinematic <= hardware && designs.len() as u64 == shown;
+        match sound && designs.iter().all(is_done) {
+            true => Ok(own),
+            false => Err(harvest::spoilt()),
+        }
+    }
+
+    /// Adds what other parts of the same search have found.
+    ///
+    /// # Errors
+    /// It belongs to another wish, or a part is in both.
+    pub fn merge(&mut self, search: &HybridSearch, other: Self) -> Result<(), Diagnostics> {
+        harvest::apart(&self.done, &other.done)?;
+        for one in [&*self, &other] {
+            harvest::fits(&one.wish, &search.name(), &one.done, search.parts.len())?;
+        }
+        self.wish = search.name();
+        self.done.extend(other.done);
+        self.done.sort_unstable();
+        self.found.add(other.found, search.wish.top);
+        Ok(())
+    }
+}
+
+impl HybridSearch {
+    /// Checks a wish and makes it ready.
+    ///
+    /// # Errors
+    /// What [`HybridWish::check`] says.
+    pub fn new(wish: &HybridWish) -> Result<Self, Diagnostics> {
+        wish.check()?;
+        Ok(Self { wish: wish.clone(), parts: space(wish).prefixes(3 * (wish.sets.len() - 1)) })
+    }
+
+    /// Into how many parts the work is cut.
+    pub fn parts(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// The parts of share `k` of `n` shares of about the same work, counted from 0.
+    pub fn shard(&self, k: usize, n: usize) -> impl Iterator<Item = usize> + use<> {
+        (k..self.parts()).step_by(n.max(1))
+    }
+
+    /// Whether so many parts of it may take as long as they do.
+    ///
+    /// # Errors
+    /// They may not.
+    pub fn afford_parts(&self, work: &dyn Work, parts: usize) -> Result<(), Diagnostics> {
+        let shafts = self.wish.mobility + self.wish.sets.len();
+        let places = shafts * (shafts + 1) / 2 - 1;
+        let choices = binomial(places, self.wish.clutches);
+        let counts = super::layout::count_layouts(self.wish.sets.len());
+        let layouts = counts.get(&shafts).map_or(0, |n| u64::try_from(*n).unwrap_or(u64::MAX));
+        let share = parts as f64 / self.parts.len().max(1) as f64;
+        let effort = Effort::new("layouts", (layouts as f64 * share) as u64, 1e-6 * (100 + choices) as f64);
+        let Err(too_long) = work.afford(&effort) else { return Ok(()) };
+        let message = format!("{too_long}; up to {choices} choices of {} clutches in each", self.wish.clutches);
+        let hint = "give fewer sets or clutches, search a `shard` (1/100), or say `yes` to let it go on";
+        Err(Diagnostic::new(Code::TooLong, "", message).hint(hint).into())
+    }
+
+    fn name(&self) -> String {
+        serde_json::to_string(&self.wish).unwrap_or_default()
+    }
+
+    /// Searches some of the parts and adds what they find to a harvest; parts that it has already are left out.
+    ///
+    /// If the work is cancelled, the parts that were not finished are missing; the rest of the harvest holds.
+    pub fn harvest(&self, work: &dyn Work, parts: impl IntoIterator<Item = usize>, into: &mut HybridHarvest) {
+        let known = |part: &usize| *part < self.parts() && into.done.binary_search(part).is_err();
+        let mut parts: Vec<usize> = parts.into_iter().filter(known).collect();
+        parts.sort_unstable();
+        parts.dedup();
+        work.begin("parts", parts.len() as u64);
+        let whole = Mutex::new(std::mem::take(into));
+        work.run(parts.len(), &|k| {
+            let Some(own) = self.part(parts[k], work) else { return };
+            let mut whole = whole.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            whole.done.push(parts[k]);
+            whole.found.add(own, self.wish.top);
+            drop(whole);
+            work.advance(1);
+        });
+        *into = whole.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        into.done.sort_unstable();
+        into.wish = self.name();
+    }
+
+    /// One part; none where the work was cancelled within it.
+    fn part(&self, part: usize, work: &dyn Work) -> Option<Part> {
+        let mut own = Part::default();
+        let ratios = self.wish.ratios();
+        let teeth = motion::teeth(&ratios)?;
+        let mut points = Points::default();
+        let whole = space(&self.wish).walk(&self.parts[part], &mut |layout| {
+            layout_of(&self.wish, part, layout, &ratios, &teeth, &mut points, &mut own);
+            !work.cancelled()
+        });
+        whole.then_some(own)
+    }
+
+    /// The answer that parts give.
+    pub fn answer(&self, harvest: &HybridHarvest) -> Hybrids {
+        let (wish, found) = (&self.wish, &harvest.found);
+        let (parts, done) = (self.parts(), harvest.done.len());
+        let share = if parts == 0 { 1.0 } else { done as f64 / parts as f64 };
+        let ratios: Vec<String> = wish.sets.iter().map(ToString::to_string).collect();
+        let mut statement = format!(
+            "All connections of {} simple sets, tooth ratios {}, with engine, output and two motors, mobility {}, {} \
+             clutches: {} layouts with the motors exchangeable, {} choices of clutches that differ in what they do, ",
+            wish.sets.len(),
+            ratios.join(", "),
+            wish.mobility,
+            wish.clutches,
+            found.layouts,
+            found.choices,
+        );
+        statement += &match done == parts {
+            true => format!(
+                "all examined; {} have the modes, in {} places; nothing else exists in this space.",
+                found.kinematic, found.hardware
+            ),
+            false => format!(
+                "{:.1} % of the parts of the space are finished; {} have the modes there, in {} places; the rest was not \
+                 examined.",
+                100.0 * share,
+                found.kinematic,
+                found.hardware
+            ),
+        };
+        Hybrids {
+            format: Format::new(),
+            wish: wish.clone(),
+            completeness: SchemeCompleteness {
+                complete: done == parts,
+                parts,
+                asked: parts,
+                done,
+                share,
+                sample: 1,
+                statement,
+            },
+            assumptions: vec![],
+            layouts: found.layouts,
+            modes: found.modes.clone(),
+            choices: found.choices,
+            kinematic: found.kinematic,
+            designs_found: found.hardware,
+            designs: found.designs.iter().map(|(_, design)| design.clone()).collect(),
+        }
+    }
+}
+
 /// Finds all hybrids that do what is wanted.
 ///
 /// # Errors
 /// What [`HybridWish::check`] says; the search takes too long for its surroundings, or was cancelled.
 pub fn hybrids(wish: &HybridWish, work: &dyn Work) -> Result<Hybrids, Diagnostics> {
-    wish.check()?;
-    let shafts = wish.mobility + wish.sets.len();
-    let places = shafts * (shafts + 1) / 2 - 1;
-    let choices = binomial(places, wish.clutches);
-    let parts = space(wish).prefixes(3 * (wish.sets.len() - 1));
-    let layouts: u64 =
-        super::layout::count_layouts(wish.sets.len()).get(&shafts).map_or(0, |n| u64::try_from(*n).unwrap_or(u64::MAX));
-    work.afford(&Effort::new("layouts", layouts, 1e-6 * (100 + choices) as f64))?;
-    work.begin("parts", parts.len() as u64);
-    let done = map(work, parts.len(), |p| {
-        let own = part(wish, &parts[p]);
-        work.advance(1);
-        own
-    })?;
-    let mut answer = Hybrids {
-        format: Format::new(),
-        wish: wish.clone(),
-        layouts: 0,
-        modes: BTreeMap::new(),
-        choices: 0,
-        kinematic: 0,
-        designs_found: 0,
-        statement: String::new(),
-        designs: vec![],
-    };
-    for own in done {
-        answer.layouts += own.layouts;
-        answer.choices += own.choices;
-        answer.kinematic += own.kinematic;
-        answer.designs_found += own.hardware;
-        for (kind, count) in own.modes {
-            *answer.modes.entry(kind).or_default() += count;
-        }
-        let left = wish.top - answer.designs.len();
-        answer.designs.extend(own.designs.into_iter().take(left));
+    let search = HybridSearch::new(wish)?;
+    search.afford_parts(work, search.parts())?;
+    let mut harvest = HybridHarvest::default();
+    search.harvest(work, 0..search.parts(), &mut harvest);
+    match harvest.done.len() == search.parts() {
+        true => Ok(search.answer(&harvest)),
+        false => Err(Cancelled.into()),
     }
-    let ratios: Vec<String> = wish.sets.iter().map(ToString::to_string).collect();
-    answer.statement = format!(
-        "All connections of {} simple sets, tooth ratios {}, with engine, output and two motors, mobility {}, {} clutches: \
-         {} layouts with the motors exchangeable, {} choices of clutches that differ in what they do, all examined; {} \
-         have the modes, in {} places; nothing else exists in this space.",
-        wish.sets.len(),
-        ratios.join(", "),
-        wish.mobility,
-        wish.clutches,
-        answer.layouts,
-        answer.choices,
-        answer.kinematic,
-        answer.designs_found,
-    );
-    Ok(answer)
 }
 
-#[derive(Default)]
+/// What was found: counts, and the first designs with the parts that they are in.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Part {
     layouts: u64,
     choices: u64,
     kinematic: u64,
     hardware: u64,
     modes: BTreeMap<ModeKind, u64>,
-    designs: Vec<HybridDesign>,
+    designs: Vec<(usize, HybridDesign)>,
 }
 
-fn part(wish: &HybridWish, prefix: &Prefix) -> Part {
-    let mut own = Part::default();
-    let ratios = wish.ratios();
-    let Some(teeth) = motion::teeth(&ratios) else { return own };
-    let mut points = Points::default();
-    space(wish).walk(prefix, &mut |layout| {
-        layout_of(wish, layout, &ratios, &teeth, &mut points, &mut own);
-        true
-    });
-    own
+impl Part {
+    /// Designs are kept in the order of their parts, so that it does not matter in which order these are added.
+    fn add(&mut self, other: Self, top: usize) {
+        let sum = |own: &mut u64, more: u64| *own = own.saturating_add(more);
+        sum(&mut self.layouts, other.layouts);
+        sum(&mut self.choices, other.choices);
+        sum(&mut self.kinematic, other.kinematic);
+        sum(&mut self.hardware, other.hardware);
+        for (kind, count) in other.modes {
+            sum(self.modes.entry(kind).or_default(), count);
+        }
+        self.designs.extend(other.designs);
+        self.designs.sort_by_key(|(part, _)| *part);
+        self.designs.truncate(top);
+    }
 }
 
 fn layout_of(
     wish: &HybridWish,
+    part: usize,
     layout: &Layout,
     ratios: &[Rational],
     teeth: &motion::Teeth,
@@ -453,7 +649,15 @@ fn layout_of(
                 own.kinematic += 1;
                 own.hardware += hardware.len() as u64;
                 if own.designs.len() < wish.top {
-                    own.designs.push(design(layout, ratios, clutches, hardware.len() - 1, &positions, &modes));
+                    let modes: Vec<(&[usize], ModeKind, Vec<bool>)> = modes
+                        .iter()
+                        .map(|(p, kind)| {
+                            let closed: Vec<Vector> = positions[*p].iter().map(|k| points.class[chosen[*k]]).collect();
+                            (positions[*p].as_slice(), *kind, turning(&terminals, &closed).to_vec())
+                        })
+                        .collect();
+                    let found = (wish, layout, ratios, clutches.as_slice());
+                    own.designs.push((part, design(found, hardware.len() - 1, &modes)));
                 }
             }
         }
@@ -479,20 +683,19 @@ fn places(chosen: &[usize], points: &Points, members: &[usize]) -> Vec<Vec<[u8; 
     all
 }
 
+type Found<'a> = (&'a HybridWish, &'a Layout, &'a [Rational], &'a [[u8; 2]]);
+
 fn design(
-    layout: &Layout,
-    ratios: &[Rational],
-    clutches: &[[u8; 2]],
+    (wish, layout, ratios, clutches): Found<'_>,
     same: usize,
-    positions: &[Vec<usize>],
-    modes: &[(usize, ModeKind)],
+    modes: &[(&[usize], ModeKind, Vec<bool>)],
 ) -> HybridDesign {
+    const ENDS: [&str; 5] = ["engine", "output", "housing", "A", "B"];
     let mut names = super::scheme::shaft_names(layout);
-    for (name, own) in names.iter_mut().zip(["engine", "output", "housing", "A", "B"]) {
+    for (name, own) in names.iter_mut().zip(ENDS) {
         *name = own.to_owned();
     }
-    let modes = modes.iter().filter(|(_, kind)| *kind != ModeKind::Nothing).map(|(position, kind)| {
-        let set = &positions[*position];
+    let modes = modes.iter().filter(|(_, kind, _)| *kind != ModeKind::Nothing).map(|(set, kind, turning)| {
         let closed: Vec<[u8; 2]> = set.iter().map(|k| clutches[*k]).collect();
         let ratio = |more: &[[u8; 2]]| {
             let closed: Vec<[u8; 2]> = closed.iter().chain(more).copied().collect();
@@ -501,9 +704,11 @@ fn design(
         let splits = [ModeKind::InputSplit, ModeKind::OutputSplit, ModeKind::CompoundSplit];
         let rest = MOTORS.iter().filter(|_| splits.contains(kind)).filter_map(|m| ratio(&[[GROUND, *m]]));
         let is_fixed = matches!(kind, ModeKind::Fixed | ModeKind::FixedWithMotor);
+        let turning = TERMINALS.iter().zip(turning).filter(|(_, turns)| **turns);
         HybridMode {
             kind: *kind,
             closed: set.iter().map(|k| format!("C{}", k + 1)).collect(),
+            turning: turning.map(|(t, _)| ENDS[usize::from(*t)].to_owned()).collect(),
             mechanical_points: rest.collect(),
             ratio: is_fixed.then(|| ratio(&[])).flatten(),
         }
@@ -513,6 +718,7 @@ fn design(
     HybridDesign {
         id: std::iter::once(layout.to_string()).chain(digits).collect::<Vec<_>>().join(" "),
         layout: layout.to_string(),
+        sets: wish.sets.clone(),
         clutches: clutches.iter().map(|e| e.map(|s| names[usize::from(s)].clone())).collect(),
         shafts: names,
         same,

@@ -60,6 +60,19 @@ pub static KNOWN: &[Known] = &[
     },
 ];
 
+/// Tooth ratios, ring/sun, for so many sets where nothing is said of them: those of the known transmission with as many sets;
+/// of one set, the first of two; of five, the four of the ZF 8HP70 and a set of 91/49.
+pub fn usual_ratios(sets: usize) -> &'static [&'static str] {
+    match sets {
+        1 => &["62/26"],
+        2 => KNOWN[0].sets,
+        3 => KNOWN[1].sets,
+        4 => KNOWN[2].sets,
+        5 => &["96/48", "96/48", "111/69", "85/23", "91/49"],
+        _ => &[],
+    }
+}
+
 /// Whether a known transmission is among the schemes that are wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -71,6 +84,9 @@ pub struct Rediscovered {
     pub source: String,
     /// Whether it does what is wanted, with the tooth ratios of the wish.
     pub found: bool,
+    /// Where it stands among the schemes that are shown, from 1, if it is one of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub row: Option<usize>,
     /// As a scheme of the space that was searched, if it does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scheme: Option<Scheme>,
@@ -127,7 +143,7 @@ impl Known {
             scheme.known = Some(self.name.to_owned());
             Some(scheme)
         });
-        Rediscovered { name: self.name.into(), source: self.source.into(), found: scheme.is_some(), scheme }
+        Rediscovered { name: self.name.into(), source: self.source.into(), found: scheme.is_some(), row: None, scheme }
     }
 
     /// What a scheme with these elements is called, if it is known.

@@ -5,12 +5,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::Diagnostics;
-use willis::work::Work;
+use willis::exact::Rational;
+use willis::work::{Effort, Work};
 
+use super::harvest::Harvest;
 use super::known::{Known, Rediscovered};
 use super::scheme::Scheme;
-use super::search::{Harvest, Search};
-use super::wish::{Bounds, Wish};
+use super::search::Search;
+use super::wish::{Bounds, Order, Wish};
 
 /// The space that was searched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,11 +36,13 @@ pub struct SchemeSpace {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Completeness {
+pub struct SchemeCompleteness {
     /// Whether it is all of it.
     pub complete: bool,
     /// Parts of the work.
     pub parts: usize,
+    /// Parts that were asked for: all, or those of a share.
+    pub asked: usize,
     /// Parts that are done.
     pub done: usize,
     /// The share of the parts that is done.
@@ -53,7 +57,7 @@ pub struct Completeness {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Stage {
+pub struct SchemeStage {
     /// The rule: `choices`, `states`, `chain`, `reverse`, `attached`, `minimal`, `limits`, `planar`.
     pub rule: String,
     /// What it asks, in words.
@@ -81,11 +85,17 @@ pub struct FoundSchemes {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
-pub struct Relaxation {
+pub struct SchemeRelaxation {
     /// What gives way, in words.
     pub change: String,
-    /// How many schemes there are then.
-    pub schemes: u64,
+    /// How many schemes there are then; absent where that was not searched.
+    pub schemes: Option<u64>,
+    /// How far it must give way for the first of them: the smallest largest step, speed or torque that there is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<f64>,
+    /// Why it was not searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
 }
 
 /// All shift schemes that do what is wanted. Serialised it is the contract `willis-schemes-1`.
@@ -100,18 +110,21 @@ pub struct Schemes {
     /// What was searched.
     pub space: SchemeSpace,
     /// How much of it.
-    pub completeness: Completeness,
+    pub completeness: SchemeCompleteness,
     /// What each rule left, in the order in which they are applied.
-    pub waterfall: Vec<Stage>,
+    pub waterfall: Vec<SchemeStage>,
     /// What was found.
     pub found: FoundSchemes,
     /// The first schemes in the order of the wish, confirmed by rational arithmetic.
     pub schemes: Vec<Scheme>,
     /// If nothing was found: what there is where one rule gives way.
-    pub relaxations: Vec<Relaxation>,
+    pub relaxations: Vec<SchemeRelaxation>,
     /// The known transmission that was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rediscovered: Option<Rediscovered>,
+    /// What was taken where nothing was said.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assumptions: Vec<String>,
 }
 
 impl Contract for Schemes {
@@ -141,7 +154,7 @@ impl Schemes {
     fn of(search: &Search, harvest: &Harvest) -> Self {
         let wish = search.wish();
         let tally = harvest.tally();
-        let stage = |rule: &str, about: String, left: u64| Stage { rule: rule.into(), about, left };
+        let stage = |rule: &str, about: String, left: u64| SchemeStage { rule: rule.into(), about, left };
         let states = super::table::binomial(wish.elements, wish.closed);
         let mut waterfall = vec![
             stage("choices", "elements of which no two do the same".into(), tally.choices),
@@ -195,7 +208,15 @@ impl Schemes {
         Self {
             format: Format::new(),
             wish: wish.clone(),
-            completeness: Completeness { complete, parts, done, share, sample: wish.sample, statement },
+            completeness: SchemeCompleteness {
+                complete,
+                parts,
+                asked: parts,
+                done,
+                share,
+                sample: wish.sample,
+                statement,
+            },
             space,
             waterfall,
             found: FoundSchemes {
@@ -207,32 +228,46 @@ impl Schemes {
             schemes,
             relaxations: vec![],
             rediscovered: None,
+            assumptions: vec![],
         }
     }
 
-    /// For an empty answer: what there is where one rule of the wish gives way, each found by a search of its own.
-    ///
-    /// # Errors
-    /// These searches would take too long for the surroundings.
-    pub fn relax(&mut self, work: &dyn Work) -> Result<(), Diagnostics> {
+    /// For an empty answer: what there is where one rule of the wish gives way, each found by a search of its own. What
+    /// is not searched, because all of them would take too long for the surroundings or were stopped, is listed with the
+    /// reason.
+    pub fn relax(&mut self, work: &dyn Work) {
+        let mut seconds = 0.0;
         for (change, wish) in relaxed(&self.wish) {
-            let Ok(search) = Search::new(&wish) else { continue };
-            search.afford(work)?;
-            let mut harvest = Harvest::default();
-            search.harvest(work, 0..search.parts(), &mut harvest);
-            if harvest.done() < search.parts() {
-                return Ok(());
-            }
-            self.relaxations.push(Relaxation { change, schemes: harvest.tally().schemes });
+            self.relaxations.push(match relaxation(&wish, work, &mut seconds) {
+                Ok((schemes, until)) => SchemeRelaxation { change, schemes: Some(schemes), until, reason: None },
+                Err(why) => SchemeRelaxation { change, schemes: None, until: None, reason: Some(why) },
+            });
         }
-        Ok(())
     }
 }
 
-/// Wishes with one rule less, and what it is.
+/// How many schemes there are, and how far the first goes in what the wish orders by.
+fn relaxation(wish: &Wish, work: &dyn Work, seconds: &mut f64) -> Result<(u64, Option<f64>), String> {
+    let first = |wrong: Diagnostics| wrong.iter().next().map_or_else(String::new, |d| d.message.clone());
+    let search = Search::new(wish).map_err(first)?;
+    // All of them together.
+    let effort = search.effort();
+    work.afford(&Effort { seconds: *seconds + effort.seconds, ..effort })
+        .map_err(|why| format!("not searched, {why}"))?;
+    *seconds += effort.seconds;
+    let mut harvest = Harvest::default();
+    search.harvest(work, 0..search.parts(), &mut harvest);
+    if harvest.done() < search.parts() {
+        return Err("the search was stopped".into());
+    }
+    let until = harvest.rows().first().filter(|_| wish.order != Order::Found).map(|row| row.key);
+    Ok((harvest.tally().schemes, until))
+}
+
+/// Wishes with one rule less, and what it is. They are ordered by what the rule limits, where that has an order.
 fn relaxed(wish: &Wish) -> Vec<(String, Wish)> {
     let mut all = vec![];
-    let base = Wish { top: 0, order: super::wish::Order::Found, ..wish.clone() };
+    let base = Wish { top: 0, order: Order::Found, ..wish.clone() };
     if wish.forward > 1 {
         let forward = wish.forward - 1;
         all.push((format!("{forward} forward gears instead of {}", wish.forward), Wish { forward, ..base.clone() }));
@@ -242,29 +277,41 @@ fn relaxed(wish: &Wish) -> Vec<(String, Wish)> {
         all.push((format!("{reverse} reverse gears instead of {}", wish.reverse), Wish { reverse, ..base.clone() }));
     }
     if wish.step != Bounds::default() {
+        let free = Bounds::default();
         all.push((
-            format!("steps of any size instead of {}", wish.step),
-            Wish { step: Bounds::default(), ..base.clone() },
+            format!("steps of any size instead of {}", decimals(&wish.step)),
+            Wish { step: free, ..base.clone() },
         ));
     }
+    if let Bounds { min: Some(min), max: Some(max) } = &wish.step {
+        let upward = Bounds { min: Some(min.clone()), max: None };
+        let change = format!("steps of {} and more, without an upper end", significant(min));
+        all.push((change, Wish { step: upward, order: Order::Step, top: 1, ..base.clone() }));
+        let downward = Bounds { min: None, max: Some(max.clone()) };
+        let change = format!("steps of up to {}, without a lower end", significant(max));
+        all.push((change, Wish { step: downward, ..base.clone() }));
+    }
     if wish.forward_range != Bounds::default() {
-        let change = format!("forward ratios of any size instead of {}", wish.forward_range);
+        let change = format!("forward ratios of any size instead of {}", decimals(&wish.forward_range));
         all.push((change, Wish { forward_range: Bounds::default(), ..base.clone() }));
     }
-    if wish.reverse_range != Bounds::default() {
-        let change = format!("reverse ratios of any size instead of {}", wish.reverse_range);
+    if wish.reverse > 0 && wish.reverse_range != Bounds::default() {
+        let change = format!("reverse ratios of any size instead of {}", decimals(&wish.reverse_range));
         all.push((change, Wish { reverse_range: Bounds::default(), ..base.clone() }));
     }
     if wish.progressive {
         all.push(("steps that may grow".into(), Wish { progressive: false, ..base.clone() }));
     }
+    if wish.minimal {
+        all.push(("elements that can be left out".into(), Wish { minimal: false, ..base.clone() }));
+    }
     if let Some(limit) = &wish.max_speed {
-        let change = format!("no limit on speeds instead of {:.4}", limit.to_f64());
-        all.push((change, Wish { max_speed: None, ..base.clone() }));
+        let change = format!("no limit on speeds instead of {}", significant(limit));
+        all.push((change, Wish { max_speed: None, order: Order::Speed, top: 1, ..base.clone() }));
     }
     if let Some(limit) = &wish.max_torque {
-        let change = format!("no limit on torques instead of {:.4}", limit.to_f64());
-        all.push((change, Wish { max_torque: None, ..base.clone() }));
+        let change = format!("no limit on torques instead of {}", significant(limit));
+        all.push((change, Wish { max_torque: None, order: Order::Torque, top: 1, ..base.clone() }));
     }
     if let Some(most) = wish.max_brakes {
         all.push((format!("any number of brakes instead of {most}"), Wish { max_brakes: None, ..base.clone() }));
@@ -275,6 +322,18 @@ fn relaxed(wish: &Wish) -> Vec<(String, Wish)> {
     all
 }
 
+/// A number as a decimal for words.
+fn significant(x: &Rational) -> String {
+    let text = format!("{:.4}", x.to_f64());
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A range in decimals for words.
+fn decimals(range: &Bounds) -> String {
+    let end = |end: &Option<Rational>| end.as_ref().map_or_else(String::new, significant);
+    format!("{}..{}", end(&range.min), end(&range.max))
+}
+
 fn statement(wish: &Wish, space: &SchemeSpace, schemes: u64, complete: bool, share: f64) -> String {
     let what = match &wish.layout {
         Some(layout) => format!("The layout {layout}"),
@@ -282,12 +341,12 @@ fn statement(wish: &Wish, space: &SchemeSpace, schemes: u64, complete: bool, sha
     };
     let ratios: Vec<String> = wish.sets.iter().map(ToString::to_string).collect();
     let mut text = format!(
-        "{what}, tooth ratios {}, {} of {} elements closed in every gear: {} layouts, {} choices of elements that differ \
+        "{what}, tooth ratios {}, {} of {} elements closed in every gear: {}, {} choices of elements that differ \
          in what they do, ",
         ratios.join(", "),
         wish.closed,
         wish.elements,
-        space.examined,
+        if space.examined == 1 { "1 layout".to_owned() } else { format!("{} layouts", space.examined) },
         space.choices,
     );
     if complete {

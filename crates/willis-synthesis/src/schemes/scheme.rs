@@ -67,6 +67,13 @@ pub struct SchemeGear {
     pub torques: Named<f64>,
     /// Slip of every open element, the speed of the first of its shafts less that of the second.
     pub slips: Named<f64>,
+    /// Output over input power when the input drives, of the scheme's train file with the mesh efficiencies that it has
+    /// ([`Schemes::rate`](super::Schemes::rate)).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency: Option<f64>,
+    /// Why there is no efficiency.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_efficiency: Option<String>,
 }
 
 /// A shift scheme: a layout with elements, and what it does.
@@ -267,6 +274,8 @@ impl Scheme {
                     .zip(torques[1..].iter().map(Rational::to_f64))
                     .collect(),
                 slips: slips.collect(),
+                efficiency: None,
+                no_efficiency: None,
             })
         };
         let mut gears = vec![];

@@ -1,14 +1,13 @@
 //! The search over all layouts: parts of work, counts, the best rows.
 
-use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::work::{Effort, Work};
 
 use super::choose::{Chooser, Found, Goal, has_spare};
+use super::harvest::{Harvest, Row, Tally, apart, fits, parse, spoilt};
 use super::layout::{GROUND, INPUT, Layout, Layouts, MAX_SHAFTS, OUTPUT, Prefix, count_layouts};
 use super::measure;
 use super::motion::{self, Motion};
@@ -58,100 +57,40 @@ pub struct Search {
     orders: Vec<Vec<usize>>,
 }
 
-/// How many layouts and choices of elements came how far.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Tally {
-    /// Layouts that were walked.
-    pub(crate) layouts: u64,
-    /// Of these, those that are an earlier one with sets of one ratio exchanged.
-    pub(crate) exchanged: u64,
-    /// Of the others, those whose equations depend on each other or whose input or output cannot turn.
-    pub(crate) dependent: u64,
-    /// Choices of elements, no two of them kinematically the same.
-    pub(crate) choices: u64,
-    /// Of these, those with enough states that can be gears.
-    pub(crate) enough: u64,
-    /// With a chain of forward gears.
-    pub(crate) chain: u64,
-    /// With reverse gears.
-    pub(crate) reverse: u64,
-    /// With no shaft that dangles.
-    pub(crate) attached: u64,
-    /// With no element that can be left out.
-    pub(crate) minimal: u64,
-    /// With speeds, torques and brakes within their limits.
-    pub(crate) limits: u64,
-    /// All that is wanted.
-    pub(crate) schemes: u64,
-    pub(crate) classes: u64,
-    pub(crate) layouts_with_scheme: u64,
-    pub(crate) by_brakes: BTreeMap<usize, u64>,
-}
-
-impl Tally {
-    fn add(&mut self, other: &Self) {
-        self.layouts += other.layouts;
-        self.exchanged += other.exchanged;
-        self.dependent += other.dependent;
-        self.choices += other.choices;
-        self.enough += other.enough;
-        self.chain += other.chain;
-        self.reverse += other.reverse;
-        self.attached += other.attached;
-        self.minimal += other.minimal;
-        self.limits += other.limits;
-        self.schemes += other.schemes;
-        self.classes += other.classes;
-        self.layouts_with_scheme += other.layouts_with_scheme;
-        for (brakes, count) in &other.by_brakes {
-            *self.by_brakes.entry(*brakes).or_default() += count;
-        }
-    }
-}
-
-/// A scheme by its name.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Row {
-    /// What it is ordered by; the smallest comes first.
-    pub(crate) key: f64,
-    pub(crate) layout: Layout,
-    pub(crate) elements: Vec<[u8; 2]>,
-}
-
-impl Row {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        let by_key = self.key.total_cmp(&other.key);
-        by_key.then_with(|| self.layout.cmp(&other.layout)).then_with(|| self.elements.cmp(&other.elements))
-    }
-}
-
-/// What the parts that are done have found. It can be kept, read back, gone on with, and merged.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Harvest {
-    /// What it belongs to: the wish as JSON.
-    wish: String,
-    /// Parts that are done, growing.
-    done: Vec<usize>,
-    tally: Tally,
-    /// The best of them.
-    rows: Vec<Row>,
-}
-
 impl Harvest {
-    /// How many parts are done.
-    pub fn done(&self) -> usize {
-        self.done.len()
+    /// Reads what was kept of a search.
+    ///
+    /// # Errors
+    /// It is none, it is spoilt, or it is that of another search.
+    pub fn read(text: &str, search: &Search) -> Result<Self, Diagnostics> {
+        let own: Self = parse(text)?;
+        fits(&own.wish, &search.name(), &own.done, search.parts())?;
+        own.sound(search).then_some(()).ok_or_else(spoilt)?;
+        Ok(own)
     }
 
-    pub(crate) fn tally(&self) -> &Tally {
-        &self.tally
-    }
-
-    pub(crate) fn rows(&self) -> &[Row] {
-        &self.rows
+    /// Whether its numbers can come from a search.
+    fn sound(&self, search: &Search) -> bool {
+        let Tally { choices, enough, chain, reverse, attached, minimal, limits, schemes, .. } = self.tally;
+        let stages = [choices, enough, chain, reverse];
+        let rules = [attached, minimal, limits, schemes];
+        let wish = search.wish();
+        let brakes = self.tally.by_brakes.iter().try_fold(0_u64, |sum, (_, n)| sum.checked_add(*n));
+        let row = |row: &Row| {
+            let own = [row.layout.sets(), row.layout.shafts(), row.elements.len()];
+            let is_last = |e: &[u8; 2]| e[0] < e[1] && usize::from(e[1]) < row.layout.shafts();
+            own == [wish.sets.len(), wish.shafts() + 1, wish.elements]
+                && row.elements.iter().all(is_last)
+                && row.elements.is_sorted()
+                && row.key.is_finite()
+                && wish.layout.is_none_or(|layout| layout == row.layout)
+        };
+        stages.is_sorted_by(|a, b| a >= b)
+            && rules.is_sorted_by(|a, b| a >= b)
+            && brakes == Some(schemes)
+            && self.tally.classes <= schemes
+            && self.rows.len() as u64 == schemes.min(wish.top as u64)
+            && self.rows.iter().all(row)
     }
 
     /// Adds what other parts of the same search have found.
@@ -159,23 +98,11 @@ impl Harvest {
     /// # Errors
     /// It belongs to another wish, or a part is in both.
     pub fn merge(&mut self, search: &Search, other: Self) -> Result<(), Diagnostics> {
-        if let Some(part) = other.done.iter().find(|part| self.done.binary_search(part).is_ok()) {
-            let message = format!("part {part} of the search is in both results");
-            return Err(Diagnostic::new(Code::Conflict, "", message).hint("give every part once").into());
+        apart(&self.done, &other.done)?;
+        for one in [&*self, &other] {
+            fits(&one.wish, &search.name(), &one.done, search.parts())?;
         }
-        let own = search.name();
-        for wish in [&self.wish, &other.wish] {
-            if !wish.is_empty() && *wish != own {
-                let message = "results of a search with another wish cannot be added to this one";
-                return Err(Diagnostic::new(Code::Unfit, "", message).into());
-            }
-        }
-        if other.done.iter().any(|part| *part >= search.parts()) {
-            return Err(
-                Diagnostic::new(Code::Unfit, "", "a part that the search does not have is given as done").into()
-            );
-        }
-        self.wish = own;
+        self.wish = search.name();
         self.done.extend(other.done);
         self.done.sort_unstable();
         self.tally.add(&other.tally);
@@ -219,6 +146,11 @@ impl Search {
         self.parts.len()
     }
 
+    /// The parts of share `k` of `n` shares of about the same work, counted from 0.
+    pub fn shard(&self, k: usize, n: usize) -> impl Iterator<Item = usize> + use<> {
+        (k..self.parts()).step_by(n.max(1))
+    }
+
     /// Layouts of the space.
     pub fn layouts(&self) -> u64 {
         if self.wish.layout.is_some() {
@@ -238,9 +170,15 @@ impl Search {
 
     /// How long the search takes.
     pub fn effort(&self) -> Effort {
+        self.effort_of(self.parts())
+    }
+
+    /// How long so many of its parts take.
+    pub fn effort_of(&self, parts: usize) -> Effort {
         let shafts = self.wish.shafts();
         let states = binomial(shafts * (shafts + 1) / 2 - 2, self.wish.closed);
-        let layouts = self.layouts().div_ceil(self.wish.sample.max(1) as u64);
+        let share = parts as f64 / self.parts().max(1) as f64;
+        let layouts = (self.layouts().div_ceil(self.wish.sample.max(1) as u64) as f64 * share).ceil() as u64;
         Effort::new("layouts", layouts, 5e-6 + 5e-8 * states as f64)
     }
 
@@ -254,11 +192,19 @@ impl Search {
     /// # Errors
     /// It may not.
     pub fn afford(&self, work: &dyn Work) -> Result<(), Diagnostics> {
-        let Err(too_long) = work.afford(&self.effort()) else { return Ok(()) };
+        self.afford_parts(work, self.parts())
+    }
+
+    /// Whether so many parts of it may take as long as they do.
+    ///
+    /// # Errors
+    /// They may not.
+    pub fn afford_parts(&self, work: &dyn Work, parts: usize) -> Result<(), Diagnostics> {
+        let Err(too_long) = work.afford(&self.effort_of(parts)) else { return Ok(()) };
         let most = self.most_choices();
         let message = format!("{too_long}; up to {most:.1e} choices of {} elements", self.wish.elements);
         let hint = "keep the connections of one `layout`, give fewer sets or elements, search a `sample` (1 of 100 \
-                    layouts), or say `yes` to let it go on";
+                    layouts) or a `shard` (1/100), or say `yes` to let it go on";
         Err(Diagnostic::new(Code::TooLong, "", message).hint(hint).into())
     }
 
@@ -297,8 +243,8 @@ impl Search {
         Room { points: Points::default(), table: Table::new(self.wish.closed + 1) }
     }
 
-    fn keep_best(&self, rows: &mut Vec<Row>) {
-        rows.sort_by(Row::cmp);
+    pub(crate) fn keep_best(&self, rows: &mut Vec<Row>) {
+        rows.sort_by(Row::order);
         rows.truncate(self.wish.top);
     }
 

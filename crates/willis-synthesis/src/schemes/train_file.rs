@@ -6,6 +6,10 @@ use willis::train::ShiftElementKind;
 use super::scheme::Scheme;
 use super::wish::SetRatio;
 
+/// Efficiencies of the meshes of sun and planet, and of planet and ring, that train files of schemes have: usual ones, where
+/// nothing is known of the teeth.
+pub(super) const MESHES: [&str; 2] = ["0.98", "0.99"];
+
 /// Teeth of sun and ring: those that were given, or the fewest that have the ratio, a sun of 20 teeth or more, and a
 /// planet of whole teeth between them; fewer where willis reads no tooth number so large.
 fn teeth(set: &SetRatio) -> [i64; 2] {
@@ -23,14 +27,31 @@ fn teeth(set: &SetRatio) -> [i64; 2] {
     [sun.saturating_mul(times), ring.saturating_mul(times)]
 }
 
-fn quoted(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+pub(super) fn quoted(names: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     let all: Vec<String> = names.into_iter().map(|n| format!("\"{}\"", n.as_ref())).collect();
     format!("[{}]", all.join(", "))
 }
 
+/// A set of a train file: its number, its teeth, the members of sun, ring and carrier.
+pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String]) -> String {
+    let [sun, ring] = teeth(set);
+    let member = |k: usize| on.get(k).map_or("", String::as_str);
+    format!(
+        "\n[[set]]\nname = \"P{n}\"\nsun = {{ member = \"{}\", teeth = {sun} }}\nring = {{ member = \"{}\", teeth = \
+         {ring} }}\ncarrier = \"{}\"\nmesh_efficiency = \
+         {{ external = {}, internal = {} }}\n",
+        member(0),
+        member(1),
+        member(2),
+        MESHES[0],
+        MESHES[1],
+    )
+}
+
 impl Scheme {
     /// The scheme as a complete train file: sets, shift elements, one state for every gear and reverse gear. Its teeth
-    /// are those of the wish, or small numbers with the same ratios; efficiencies are left to the defaults of the file.
+    /// are those of the wish, or small numbers with the same ratios; mesh efficiencies are 0.98 of sun and planet and 0.99 of
+    /// planet and ring.
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
         let name = self.known.clone().unwrap_or_else(|| format!("scheme {}", self.id));
@@ -38,7 +59,10 @@ impl Scheme {
         let turning: Vec<&str> = self.shafts.iter().filter(|s| s.name != "housing").map(|s| s.name.as_str()).collect();
         text += &format!("# {} gears, spread {:.3}: {}\n\n", self.gears.len(), self.spread, ratios.join("  "));
         text += &format!("format = 1\nname = \"{name}\"\n");
-        text += &format!("source = \"Found by a search over all shift schemes: layout {}.\"\n\n", self.id);
+        text += &format!(
+            "source = \"Found by a search over all shift schemes: layout {}. Mesh efficiencies assumed.\"\n\n",
+            self.id
+        );
         text += &format!("members = {}\nterminals = [\"input\", \"output\"]\n", quoted(turning));
         let on = |member: String| match self.shafts.iter().find(|s| s.members.contains(&member)) {
             Some(shaft) if shaft.name != "housing" => shaft.name.clone(),
@@ -46,14 +70,7 @@ impl Scheme {
         };
         for (n, set) in self.sets.iter().enumerate() {
             let n = n + 1;
-            let [sun, ring] = teeth(set);
-            text += &format!(
-                "\n[[set]]\nname = \"P{n}\"\nsun = {{ member = \"{}\", teeth = {sun} }}\nring = {{ member = \"{}\", \
-                 teeth = {ring} }}\ncarrier = \"{}\"\n",
-                on(format!("s{n}")),
-                on(format!("r{n}")),
-                on(format!("c{n}")),
-            );
+            text += &set_lines(n, set, &["s", "r", "c"].map(|part| on(format!("{part}{n}"))));
         }
         for element in &self.elements {
             let kind = if element.kind == ShiftElementKind::Brake { "brake" } else { "clutch" };

@@ -322,7 +322,7 @@ impl Wish {
 
     /// Shafts of a layout besides the housing.
     pub(crate) fn shafts(&self) -> usize {
-        self.sets.len() + self.closed + 1
+        self.sets.len().saturating_add(self.closed).saturating_add(1)
     }
 
     /// The tooth ratios.
@@ -362,7 +362,7 @@ impl Wish {
             say(Code::Conflict, "closed", message, "want more elements, or fewer closed".into());
         } else {
             let states = binomial(self.elements, self.closed);
-            if self.forward + self.reverse > states {
+            if self.forward.saturating_add(self.reverse) > states {
                 let Self { elements, closed, forward, reverse, .. } = self;
                 let message = format!(
                     "{closed} of {elements} elements can be closed in {states} ways, too few for {forward} forward \
@@ -407,7 +407,11 @@ impl Wish {
                      closed elements, not with {}",
                     found[1], self.closed
                 );
-                say(Code::Conflict, "layout", message, format!("want {closed} closed elements"));
+                let hint = match closed > 0 {
+                    true => format!("want {closed} closed elements"),
+                    false => "such a layout leaves nothing to close".to_owned(),
+                };
+                say(Code::Conflict, "layout", message, hint);
             }
         }
         for (place, limit) in [("max_speed", &self.max_speed), ("max_torque", &self.max_torque)] {
@@ -417,6 +421,13 @@ impl Wish {
         }
         if self.sample == 0 {
             say(Code::OutOfRange, "sample", "one of 0 layouts".into(), "1 searches all of them".into());
+        } else if self.sample > 1 && self.layout.is_some() {
+            let message = format!("one of {} layouts, where only one is searched", self.sample);
+            say(Code::Conflict, "sample", message, "leave out `sample` or `layout`".into());
+        }
+        if self.max_speed.as_ref().is_some_and(|l| l.sign() > 0 && *l < Rational::ONE) {
+            let message = "no shaft may turn as fast as the input, which does".to_owned();
+            say(Code::Conflict, "max_speed", message, "it is per speed of the input: 1 or more".into());
         }
         if wrong.is_empty() { Ok(()) } else { Err(wrong) }
     }
