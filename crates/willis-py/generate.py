@@ -145,6 +145,13 @@ True
 >>> "frequency_hz" in modes
 True
 """,
+    "design": """
+>>> found = willis.design(kind="3k", ratio=100, ring=0.09, module=0.0008, sort="forward")
+>>> found.data.waterfall[0].trains, found.data.completeness.complete
+(1064, True)
+>>> willis.Train(found.files("train").popitem()[1].decode()).analyze().state().drive.verdict
+'unique'
+""",
     "schemes": """
 >>> wish = {"elements": 4, "closed": 2, "forward": 3, "step": "1.15..2.2", "forward_range": "0.5..5", "reverse_range": "1.2..5"}
 >>> found = willis.schemes(sets=2, **wish)

@@ -51,7 +51,9 @@ def _field(question: str, name: str, value: Any) -> Any:
         return _quantity.one(value, _QUANTITIES[name])
     if name in ("state", "operation", "scenario") and isinstance(value, int):
         return str(value)
-    if name in ("profile", "data", "layout"):
+    if question == "design":
+        value = _wish(name, value)
+    if name in ("profile", "data", "layout", "file", "like"):
         return _attachment(name, value)
     if name == "resume":
         files = [value] if isinstance(value, (str, os.PathLike)) else value
@@ -87,8 +89,22 @@ _LISTS = {
 }
 
 
+def _wish(name: str, value: Any) -> Any:
+    """A wish for a design as its file has it: numbers as they are, lengths in metres, two ends as a range."""
+    if name == "ring":
+        return _quantity.one(value, "m")
+    if name == "module":
+        return _quantity.listed(value, "m")
+    if name in ("ratio", "tolerance", "planets", "forward", "backward"):
+        return "..".join(_quantity.one(end) for end in value) if isinstance(value, tuple) else _quantity.one(value)
+    return [value] if name == "write" and isinstance(value, int) else value
+
+
 def _attachment(name: str, value: Any) -> dict[str, str]:
-    """A file by its path, or a table that is in memory."""
+    """A file by its path, a train, or a table that is in memory."""
+    text = getattr(value, "text", None)
+    if isinstance(text, str):
+        return {"name": str(value.name), "text": text}
     if isinstance(value, (str, os.PathLike)):
         return {"name": os.fspath(value), "text": ""}
     return {"name": name, "text": _quantity.csv(value)}
