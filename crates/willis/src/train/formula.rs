@@ -320,6 +320,10 @@ mod tests {
             ("sin t^2", 3.0f64.sin().powi(2)),
             ("sin -t", -(3.0f64.sin())),
             ("min(t, max(w_a, 2.5)) + atan2(0, 1)", 2.5),
+            ("(t - 0.5) max 0 min 1", 1.0),
+            ("t max 1 + w_a", 5.0),
+            ("t max 7 - w_a", 5.0),
+            ("-((120*((t - 0.5) max 0 min 1)) min (45000/(abs(w_a) max 100)))", -120.0),
             ("w_b*0 + TAU - 2*π + e - E + w_a", 2.0),
         ];
         for (text, expected) in cases {

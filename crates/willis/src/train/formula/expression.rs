@@ -53,7 +53,7 @@ pub(super) enum Unary {
     Log10,
 }
 
-/// The functions of two numbers, by name.
+/// The functions of two numbers, by name; they may stand between them too: `t max 0`.
 const OF_TWO: [(&str, Binary); 3] = [("atan2", Binary::Atan2), ("min", Binary::Min), ("max", Binary::Max)];
 
 /// The functions of one number, by name.
@@ -273,34 +273,42 @@ impl<'t> Parser<'t> {
         self.steps.push(Step::Constant(made));
     }
 
-    /// `a + b - c`, from the left.
+    /// `a + b max c`, from the left. What takes away binds closer than what adds, so that `a max b - c` is `a max (b - c)`.
     fn sum(&mut self) -> Result<(), String> {
-        self.product()?;
-        loop {
-            let operation = match self.next() {
-                Some("+") => Binary::Add,
-                Some("-") => Binary::Subtract,
-                _ => return Ok(()),
-            };
-            self.at += 1;
-            self.product()?;
-            self.put(Step::Binary(operation));
-        }
+        self.row(Self::difference, |token| match token {
+            "+" => Some(Binary::Add),
+            name => named(&OF_TWO, name),
+        })
     }
 
-    /// `a * b / c`, from the left.
+    /// `a - b - c`, from the left.
+    fn difference(&mut self) -> Result<(), String> {
+        self.row(Self::product, |token| (token == "-").then_some(Binary::Subtract))
+    }
+
+    /// `a * b * c`, from the left.
     fn product(&mut self) -> Result<(), String> {
-        self.signed()?;
-        loop {
-            let operation = match self.next() {
-                Some("*") => Binary::Multiply,
-                Some("/") => Binary::Divide,
-                _ => return Ok(()),
-            };
+        self.row(Self::quotient, |token| (token == "*").then_some(Binary::Multiply))
+    }
+
+    /// `a / b / c`, from the left.
+    fn quotient(&mut self) -> Result<(), String> {
+        self.row(Self::signed, |token| (token == "/").then_some(Binary::Divide))
+    }
+
+    /// Operands with operators between them, from the left.
+    fn row(
+        &mut self,
+        operand: fn(&mut Self) -> Result<(), String>,
+        operator: fn(&str) -> Option<Binary>,
+    ) -> Result<(), String> {
+        operand(self)?;
+        while let Some(operation) = self.next().and_then(operator) {
             self.at += 1;
-            self.signed()?;
+            operand(self)?;
             self.put(Step::Binary(operation));
         }
+        Ok(())
     }
 
     /// A power with its signs.
