@@ -1,4 +1,4 @@
-// The heat of a train in the drawer: temperatures, the warm-up that is read by hand, and tests that are dropped on it.
+// Heat and losses of a train in the drawer: temperatures, the warm-up that is read by hand, and tests that are dropped on it.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
@@ -148,3 +148,24 @@ for (const theme of ["light", "dark"]) {
     await page.context().close();
   });
 }
+
+test("losses over torque and oil temperature, film and friction along the teeth", { timeout: 120_000 }, async () => {
+  const page = await studio(at);
+  await open(page, "fva-planetary-stage.toml");
+  await tab(page, "Losses");
+  const view = page.locator("#drawer-view");
+  const says = (words) => page.waitForFunction((w) => document.querySelector("#drawer-view .sheet svg")?.textContent.includes(w), words, PATIENT);
+  await says("speed of sun varies");
+  await view.locator("[role=radio]:text-is('speed')").focus();
+  await page.keyboard.press("ArrowRight");
+  await says("torque of sun varies");
+  await page.keyboard.press("ArrowRight");
+  await says("oil temperature varies");
+  await page.keyboard.press("ArrowRight");
+  await says("film thickness over composite roughness");
+  await view.locator("select").selectOption("P1.planet-ring");
+  await says("mixed");
+  await page.keyboard.press("Escape");
+  assert.deepEqual(page.faults, []);
+  await page.context().close();
+});
