@@ -8,7 +8,7 @@ use willis::model::{Model, Target};
 use willis::study::{Axis, Hold, PointAnswer, PointAnswers, Question, Trains, UncertaintyPlan, UncertaintyRequest};
 use willis::work::{self, Effort, Serial, Work};
 
-use crate::kind::{Ask, Detail, FigureRequest, Kind, MOMENT};
+use crate::kind::{Ask, Detail, FigureRequest, Kind, MEASURED, MOMENT};
 use crate::map::compiled::CompiledProbe;
 use crate::parts::axes::{self, ChartAxis};
 
@@ -54,11 +54,15 @@ const SAMPLES: usize = 256;
 /// Samples of a coarse figure: the first of a design with so many, the fewest that there can be.
 const COARSE: usize = 32;
 const DESIGN: usize = 128;
+/// Samples of a coarse figure at least, however long each takes.
+const FEWEST: usize = 4;
 /// Samples that are computed as one part of the work.
 const PART: usize = 8;
 
 /// Points along the axis where the caller does not say.
 const STEPS: usize = 9;
+/// The same of a coarse figure of a train whose points take long.
+const LEAST_STEPS: usize = 3;
 /// Evaluations of one picture at most.
 const MOST_POINTS: usize = 200_000;
 
@@ -157,8 +161,14 @@ fn bands_within(
 ) -> Result<Bands, Diagnostics> {
     let plan = UncertaintyPlan::new(model, request)?;
     let question = plan.question();
+    let train = question.model().train();
+    let pace = detail.pace(train, 1, work, || {
+        let _ = PointAnswer::of(train, question.base());
+    });
+    // Each value is asked of every sample.
+    let is_slow = !pace.fits(FEWEST * detail.of(STEPS));
     let over = match over {
-        [] => vec![axes::usual_speed(question, detail.of(STEPS))],
+        [] => vec![axes::usual_speed(question, if is_slow { LEAST_STEPS } else { detail.of(STEPS) })],
         [_] => over.to_vec(),
         _ => {
             let message = format!("bands are drawn over one quantity, not {}", over.len());
@@ -178,15 +188,22 @@ fn bands_within(
         return Err(Diagnostic::new(Code::BadAxis, "", message).hint("take fewer of either").into());
     }
     work.begin("samples", samples.len() as u64);
-    let parts: Vec<&[usize]> = samples.chunks(PART).collect();
+    // What is coarse ends with its moment, where there is a clock, but has some samples.
+    let is_coarse = detail == Detail::Coarse && work.clock().is_some();
+    let began = work.clock().unwrap_or_default();
+    let parts: Vec<&[usize]> = samples.chunks(if is_coarse { 1 } else { PART }).collect();
     // One train after the other, so that each is built once.
     let part = |k: usize| -> Vec<Vec<[f64; 2]>> {
+        if is_coarse && k >= FEWEST && work.clock().unwrap_or_default() - began > MEASURED {
+            return vec![];
+        }
         let mut trains = Default::default();
         let values = parts[k].iter().map(|sample| along(&plan, *sample, &x, &mut trains)).collect();
         work.advance(parts[k].len() as u64);
         values
     };
     let values: Vec<Vec<[f64; 2]>> = work::map(work, parts.len(), part)?.into_iter().flatten().collect();
+    let samples = values.len();
     let mut trains = Default::default();
     let points = (0..x.len())
         .map(|j| {
@@ -197,7 +214,7 @@ fn bands_within(
             };
             let (efficiency, loss) = (sorted(0), sorted(1));
             let told = |own: &[f64]| {
-                (2 * own.len() >= samples.len() && !own.is_empty())
+                (2 * own.len() >= samples && !own.is_empty())
                     .then(|| QUANTILES.map(|p| willis::unstable::quantile(own, p)))
             };
             let nominal = plan.answer_along(None, &x, j, &mut trains);
@@ -216,7 +233,7 @@ fn bands_within(
         basis: axes::basis(question, &[&x]),
         x: ChartAxis::of(&x),
         quantities: plan.quantities().iter().map(|q| format!("{} {}", q.name, q.describe())).collect(),
-        samples: samples.len(),
+        samples,
         points,
     })
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use willis::analysis::Selection;
 use willis::diagnostic::Diagnostics;
 use willis::model::Model;
+use willis::train::Train;
 use willis::work::{Effort, Work};
 
 use crate::report::paper;
@@ -18,16 +19,27 @@ pub(crate) enum Detail {
 }
 
 impl Detail {
-    /// Points along two axes, of so many in full, where each point takes so long, s: a coarse figure has half as many along
-    /// each axis, and fewer if they would take longer than a moment, but enough to show a shape.
-    pub fn grid(self, full: [usize; 2], each: f64) -> [usize; 2] {
-        /// Points along an axis that show a shape.
-        const LEAST: usize = 6;
-        if self == Self::Fine {
-            return full;
+    /// How long points take: as estimated, or, for a coarse figure of a train whose points take long and where there is a clock,
+    /// as measured with one point.
+    pub fn pace(self, train: &Train, points: u64, work: &dyn Work, one: impl Fn()) -> Pace {
+        /// Seconds of a point after which a second one would take too long to be tried.
+        const LONG: f64 = 0.002;
+        let each = Effort::of_points(train, points).seconds;
+        let estimated = Pace { detail: self, each, moment: MOMENT, least: 6 };
+        // What is compiled takes less and less from point to point.
+        let is_long = train.is_physical() || !train.variators().is_empty();
+        let measure = || {
+            let began = work.clock()?;
+            one();
+            Some(work.clock()? - began)
+        };
+        if self == Self::Fine || !is_long {
+            return estimated;
         }
-        let part = (MOMENT / (each * (full[0] * full[1]) as f64)).sqrt().min(0.5);
-        full.map(|n| ((n as f64 * part).ceil() as usize).max(LEAST.min(n)))
+        let Some(first) = measure() else { return estimated };
+        // The first point prepares what the others find there.
+        let again = if first < LONG { measure().unwrap_or(first) } else { first };
+        Pace { each: points as f64 * again.min(first).max(1e-6), moment: MEASURED, least: 4, ..estimated }
     }
 
     /// Points along an axis, of so many in full.
@@ -42,9 +54,53 @@ impl Detail {
 /// Seconds of a coarse figure as its work is estimated. Estimates are right within a factor of three, and borders come to the
 /// points: what is seen takes some 20 ms to 50 ms.
 pub(crate) const MOMENT: f64 = 0.008;
+/// The same where the work is measured: the picture is drawn in the rest of 50 ms.
+pub(crate) const MEASURED: f64 = 0.024;
 
 /// See [`Kind::steps`].
 pub(crate) type InSteps<T> = fn(&Model, &FigureRequest, &dyn Work, Detail) -> Result<T, Diagnostics>;
+
+/// How many points fit a moment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    detail: Detail,
+    /// Seconds of a point.
+    each: f64,
+    /// Seconds for all of them.
+    moment: f64,
+    /// Points along an axis that show a shape.
+    least: usize,
+}
+
+impl Pace {
+    /// Whether everything is wanted, however long it takes.
+    pub fn is_full(self) -> bool {
+        self.detail == Detail::Fine
+    }
+
+    /// Points along two axes, of so many in full: a coarse figure has half as many along each axis, and fewer if they would take
+    /// longer than a moment, but enough to show a shape.
+    pub fn grid(self, full: [usize; 2]) -> [usize; 2] {
+        if self.is_full() {
+            return full;
+        }
+        let part = (self.moment / (self.each * (full[0] * full[1]) as f64)).sqrt().min(0.5);
+        full.map(|n| ((n as f64 * part).ceil() as usize).max(self.least.min(n)))
+    }
+
+    /// Whether so many points fit a moment, or all are wanted.
+    pub fn fits(self, points: usize) -> bool {
+        self.is_full() || self.each * points as f64 <= self.moment
+    }
+
+    /// Points that fit a moment at each of so many places, but no more than these.
+    pub fn at_each(self, places: usize, most: usize) -> usize {
+        match self.is_full() {
+            true => most,
+            false => ((self.moment / (2.0 * self.each * places.max(1) as f64)) as usize).min(most),
+        }
+    }
+}
 
 /// What a kind of figure says of itself. Each folder has one, as `KIND`.
 pub(crate) struct Kind<T> {

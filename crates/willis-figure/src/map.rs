@@ -9,12 +9,12 @@ use serde::{Deserialize, Serialize};
 use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
-use willis::study::{Axis, Hold, PointVerdict, Question};
+use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question};
 use willis::train::{Load, MemberId, Operation, Train};
 use willis::unstable;
 use willis::work::{Cancelled, Effort, Serial, Work};
 
-use crate::kind::{Ask, Detail, FigureRequest, Kind};
+use crate::kind::{Ask, Detail, FigureRequest, Kind, Pace};
 use crate::parts::axes::{self, ChartAxis};
 use probe::{Limits, Probe};
 
@@ -226,9 +226,12 @@ fn map_within(
     {
         return Ok(map);
     }
+    let pace = detail.pace(train, 1, work, || {
+        let _ = PointAnswer::of(train, question.base());
+    });
     let over = match over {
         [] => {
-            let [columns, rows] = detail.grid([COLUMNS, ROWS], Effort::of_points(train, 1).seconds);
+            let [columns, rows] = pace.grid([COLUMNS, ROWS]);
             vec![axes::usual_speed(&question, columns), axes::usual_load(&question, rows)]
         }
         [_, _] => over.to_vec(),
@@ -243,7 +246,7 @@ fn map_within(
     let marks = marks(&question, &x, &y);
     let mut probe = Probe::new(&question, [&x, &y], None)?;
     let own = [ChartAxis::of(&x), ChartAxis::of(&y)];
-    Ok(EfficiencyMap { title: train.name().to_owned(), basis, marks, ..mapped(own, &mut probe, work)? })
+    Ok(EfficiencyMap { title: train.name().to_owned(), basis, marks, ..mapped(own, &mut probe, work, pace)? })
 }
 
 /// How many different zones there are.
@@ -306,14 +309,19 @@ fn going(work: &dyn Work) -> Result<(), Cancelled> {
     if work.cancelled() { Err(Cancelled) } else { Ok(()) }
 }
 
-/// The border between two points of different zones.
-fn border(between: [usize; 2], map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -> (MapBorder, Option<f64>) {
+/// The border between two points of different zones, by so many halvings of their distance.
+fn border(
+    between: [usize; 2],
+    map: &EfficiencyMap,
+    probe: &mut Probe<'_, '_>,
+    halvings: usize,
+) -> (MapBorder, Option<f64>) {
     let [a, b] = between.map(|k| map.place(k));
     let on = |t: f64| [0, 1].map(|c| a[c] + t * (b[c] - a[c]));
     let ends = between.map(|k| map.points[k].zone);
     let mut sides = between.map(|k| map.points[k].clone());
     let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
+    for _ in 0..halvings {
         let middle = (low + high) / 2.0;
         let there = probe.at(on(middle)).point;
         match there.zone == ends[0] {
@@ -324,9 +332,9 @@ fn border(between: [usize; 2], map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -
     let at = (low + high) / 2.0;
     // Another zone lies between: its middle is where its other border is as far as this one.
     let mut skipped = None;
-    if sides[1].zone != ends[1] {
+    if halvings > 0 && sides[1].zone != ends[1] {
         let (mut low, mut high) = (high, 1.0);
-        for _ in 0..HALVINGS {
+        for _ in 0..halvings {
             let middle = (low + high) / 2.0;
             match probe.at(on(middle)).point.zone == ends[1] {
                 true => high = middle,
@@ -344,7 +352,12 @@ fn border(between: [usize; 2], map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -
 ///
 /// A ridge of efficiency may lie between two neighbours: the zone on its one side is then seen at neither of them, and contours
 /// along it would break into islands. So a line is added to the grid wherever a border has a third zone within it.
-fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) -> Result<EfficiencyMap, Cancelled> {
+fn mapped(
+    [x, y]: [ChartAxis; 2],
+    probe: &mut Probe<'_, '_>,
+    work: &dyn Work,
+    pace: Pace,
+) -> Result<EfficiencyMap, Cancelled> {
     let points = gridded([&x, &y], probe, work)?;
     let mut map = EfficiencyMap {
         title: String::new(),
@@ -358,10 +371,12 @@ fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) ->
         marks: vec![],
     };
     let most = [&map.x, &map.y].map(|a| a.values.len() + MOST_LINES);
-    for round in 0..=ROUNDS {
-        let (borders, wanted) = borders(&map, probe, work)?;
+    // A coarse map has the lines that it has.
+    let rounds = if pace.is_full() { ROUNDS } else { 0 };
+    for round in 0..=rounds {
+        let (borders, wanted) = borders(&map, probe, work, pace)?;
         map.borders = borders;
-        if round == ROUNDS || !map.refined(&wanted, most) {
+        if round == rounds || !map.refined(&wanted, most) {
             break;
         }
         map.points = gridded([&map.x, &map.y], probe, work)?;
@@ -373,7 +388,7 @@ fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) ->
         if several(corners) > 2 && map.through(cell).is_none() {
             let [a, b] = [cell, cell + 1 + width].map(|k| map.place(k));
             let zone = |at: [f64; 2]| probe.at([0, 1].map(|c| a[c] + at[c] * (b[c] - a[c]))).point.zone;
-            map.joints.push(MapJoint { cell, at: joint(corners, zone) });
+            map.joints.push(MapJoint { cell, at: if pace.is_full() { joint(corners, zone) } else { [0.5; 2] } });
         }
     }
     Ok(map)
@@ -384,21 +399,22 @@ fn borders(
     map: &EfficiencyMap,
     probe: &mut Probe<'_, '_>,
     work: &dyn Work,
+    pace: Pace,
 ) -> Result<(Vec<MapBorder>, [Vec<f64>; 2]), Cancelled> {
     let width = map.x.values.len();
     let right = (0..map.points.len()).filter(|k| (k + 1) % width > 0).map(|k| ([k, k + 1], 0));
     let up = (0..map.points.len() - width).map(|k| ([k, k + width], 1));
+    let differ = |&([a, b], _): &([usize; 2], usize)| map.points[a].zone != map.points[b].zone;
+    let pairs: Vec<_> = right.chain(up).filter(differ).collect();
+    let halvings = pace.at_each(pairs.len(), HALVINGS);
     let (mut all, mut wanted) = (vec![], [vec![], vec![]]);
-    for (between, axis) in right.chain(up) {
-        let [a, b] = between;
-        if map.points[a].zone != map.points[b].zone {
-            going(work)?;
-            let (found, skipped) = border(between, map, probe);
-            all.push(found);
-            if let Some(t) = skipped {
-                let [from, to] = between.map(|k| map.place(k)[axis]);
-                wanted[axis].push(from + t * (to - from));
-            }
+    for (between, axis) in pairs {
+        going(work)?;
+        let (found, skipped) = border(between, map, probe, halvings);
+        all.push(found);
+        if let Some(t) = skipped {
+            let [from, to] = between.map(|k| map.place(k)[axis]);
+            wanted[axis].push(from + t * (to - from));
         }
     }
     Ok((all, wanted))
@@ -513,7 +529,10 @@ fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Resul
         format!("{:.12e}", (x / unit).ceil() * unit).parse::<f64>().unwrap_or(x)
     };
     let (speed, torque) = (digits(most_speed / low), digits(most_torque * high));
-    let [columns, rows] = detail.grid(FEWER, Effort::of_points(train, ratios.len() as u64).seconds);
+    let pace = detail.pace(train, ratios.len() as u64, work, || {
+        let _ = PointAnswer::of(train, question.base());
+    });
+    let [columns, rows] = pace.grid(FEWER);
     // Low enough that no gear lies outside as a whole.
     let (least_speed, least_torque) =
         ((speed / 40.0).min(most_speed / high / 2.0), (torque / 30.0).min(most_torque * low / 2.0));
@@ -529,7 +548,8 @@ fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Resul
     let mut probe = Probe::new(question, [&x, &y], Some((limits, choice)))?;
     // The limits of every gear are lines of the grid, so that the corners between them are sharp.
     let [mut own_x, mut own_y] = [ChartAxis::of(&x), ChartAxis::of(&y)];
-    for at in probe.corners([own_x.values[0], own_y.values[0]]) {
+    let corners = if pace.is_full() { probe.corners([own_x.values[0], own_y.values[0]]) } else { vec![] };
+    for at in corners {
         for (axis, value) in [&mut own_x, &mut own_y].into_iter().zip(at) {
             let within = axis.values[0] < value && axis.values.last() > Some(&value);
             let close = |v: &f64| (v - value).abs() < 1e-9 * value.abs();
@@ -538,7 +558,7 @@ fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Resul
             }
         }
     }
-    let map = mapped([own_x, own_y], &mut probe, work)?;
+    let map = mapped([own_x, own_y], &mut probe, work, pace)?;
     if map.points.iter().filter_map(|p| p.best).collect::<std::collections::BTreeSet<_>>().len() < 2 {
         return Ok(None);
     }

@@ -10,6 +10,11 @@ extern "C" {
     #[cfg(target_arch = "wasm32")]
     #[wasm_bindgen(js_namespace = globalThis, js_name = willisProgress)]
     fn progress(what: &str, steps: f64, begins: bool);
+
+    /// Milliseconds since the page or its worker began.
+    #[cfg(target_arch = "wasm32")]
+    #[wasm_bindgen(js_namespace = performance)]
+    fn now() -> f64;
 }
 
 /// Nobody listens outside a browser.
@@ -26,6 +31,11 @@ impl Work for Browser {
 
     fn advance(&self, steps: u64) {
         progress("", steps as f64, false);
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn clock(&self) -> Option<f64> {
+        Some(now() / 1e3)
     }
 
     fn patience(&self) -> f64 {

@@ -36,6 +36,12 @@ pub trait Work: Sync {
         if effort.seconds <= self.patience() { Ok(()) } else { Err(TooLong(*effort)) }
     }
 
+    /// Seconds since some moment, where what fits a time is wanted rather than the same everywhere; only what is shown until
+    /// the whole answer is there asks for it.
+    fn clock(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether the computation should stop early. What is not done then is left out, and the caller is told.
     fn cancelled(&self) -> bool {
         false

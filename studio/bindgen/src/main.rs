@@ -46,10 +46,10 @@ fn pack(input: &str, folder: &str) -> std::io::Result<()> {
     let name = Path::new(input).file_stem().unwrap_or_default().to_string_lossy();
     let plain = Path::new(folder).join(format!("{name}_bg.wasm"));
     let bytes = fs::read(&plain)?;
-    // Instructions have any length, so their place says nothing; the bytes before them do.
+    // Instructions have any length, so their place says nothing; the whole byte before them does.
     let mut options = LzmaOptions::with_preset(9);
     options.dict_size = bytes.len().next_power_of_two() as u32;
-    (options.lc, options.lp, options.pb, options.nice_len) = (4, 0, 0, 273);
+    (options.lc, options.lp, options.pb, options.nice_len) = (8, 0, 0, 273);
     let mut packed = LzmaWriter::new_use_header(Vec::new(), &options, Some(bytes.len() as u64))?;
     packed.write_all(&bytes)?;
     fs::write(plain.with_extension("wasm.lzma"), packed.finish()?)?;

@@ -41,3 +41,10 @@ export function example(name: string): Doc | null {
   const named = Object.entries(tables).filter(([path]) => found.text.includes(stem(path)));
   return { name: found.name, text: found.text, files: Object.fromEntries(named.map(([path, text]) => [stem(path), text])) };
 }
+
+/** Tests of an example, which `calibrate` takes. */
+export function testsOf(name: string): { name: string; text: string } | null {
+  const called = `tests-${name.replace(/\.toml$/, "")}.csv`;
+  const found = Object.entries(tables).find(([path]) => stem(path) === called);
+  return found ? { name: called, text: found[1] } : null;
+}

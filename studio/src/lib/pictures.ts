@@ -41,7 +41,7 @@ export function drawn(text: string, prefix: string): Drawn | null {
     title.remove();
   }
   // Nor is there room for a heading that the page has already; a line below it stays.
-  const heading = svg.querySelector(':scope > text[font-size="20"], :scope > g > text[font-size="20"]');
+  const heading = svg.querySelector(':scope > text[font-size="20"], :scope > g > text[font-size="20"], :scope > g > g > text[font-size="20"]');
   const top = heading && n(heading, "y") < 50 ? n(heading, "y") + 6 : 0;
   if (top > 0) heading!.remove();
   const viewBox = `0 ${top} ${width} ${height - top}`;

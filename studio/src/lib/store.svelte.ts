@@ -426,16 +426,29 @@ class Store {
     const last = this.#toggled;
     // The same one back at once is as it was before, also where it stood still in between.
     if (last?.element === element && last.to === from && last.from.doc === this.doc) this.#back(last.from);
-    else {
-      const speeds = is.speeds.map((m, k) => [m, this.#speed(m, from) ?? (k === 0 ? "1000 rpm" : "0 rpm")]);
-      const [input] = is.ends;
-      const load = input ? this.#load(input, from) : { torques: {}, powers: {} };
-      // Another terminal keeps what it carried, torque or power.
-      const kept = (m: string) => (m in from.powers ? { torques: {}, powers: { [m]: from.powers[m]! } } : { torques: { [m]: from.torques[m] ?? "0 N m" }, powers: {} });
-      this.#set(closed, is, speeds, (m) => (m === input ? load : kept(m)));
-    }
+    else this.#close(closed, is, from);
     this.#toggled = { element, from: step, to: this.point };
     this.refresh();
+  }
+
+  /** A gear that the table does not have, or not yet: it stays one by hand, also where it is one of the table. */
+  invent(closed: string[], what: string): void {
+    if (!this.facts || this.broken) return;
+    const from = this.point;
+    const is = this.#closed(closed, this.facts.members);
+    this.#remember(this.#step(what));
+    this.#close(closed, { ...is, state: null }, from);
+    this.refresh();
+  }
+
+  /** The point with these elements closed: members that settle the train turn as they did, terminals carry what they carried. */
+  #close(closed: string[], is: Closed, from: Point): void {
+    const speeds = is.speeds.map((m, k) => [m, this.#speed(m, from) ?? (k === 0 ? "1000 rpm" : "0 rpm")]);
+    const [input] = is.ends;
+    const load = input ? this.#load(input, from) : { torques: {}, powers: {} };
+    // Another terminal keeps what it carried, torque or power.
+    const kept = (m: string) => (m in from.powers ? { torques: {}, powers: { [m]: from.powers[m]! } } : { torques: { [m]: from.torques[m] ?? "0 N m" }, powers: {} });
+    this.#set(closed, is, speeds, (m) => (m === input ? load : kept(m)));
   }
 
   /** What the train is with these elements closed; members whose speeds are known settle the others. */

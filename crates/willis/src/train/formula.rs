@@ -1,15 +1,14 @@
 //! Formulas of the time and of speeds, as the train file writes them.
 
 use std::cmp::Ordering;
-use std::num::ParseFloatError;
-use std::str::FromStr;
 
-use exmex::{BinOp, Express, Operator};
 use num_dual::{Dual64, DualNum};
 
+mod expression;
 mod jumps;
 
-use jumps::{Span, SpanOperators};
+use expression::{Binary, Expression, Number, Unary};
+use jumps::Span;
 
 /// The functions whose value jumps.
 const JUMPING: [&str; 6] = ["signum", "floor", "ceil", "round", "trunc", "fract"];
@@ -31,28 +30,11 @@ const WAVES: [&str; 3] = ["sin", "cos", "tan"];
 #[derive(Clone, Debug)]
 pub struct Formula {
     text: String,
-    /// It takes 20 kB in place.
-    expression: Box<exmex::FlatEx<f64>>,
-    /// The same, that takes derivatives along.
-    rising: Box<exmex::FlatEx<Rising, RisingOperators>>,
-    /// The same over stretches of time, if it has functions that jump or repeat themselves.
-    spans: Option<Box<exmex::FlatEx<Span, SpanOperators>>>,
+    expression: Expression,
     jumps: bool,
     waves: bool,
     /// For each variable of the expression: the time, or the position of a speed.
     variables: Vec<Option<usize>>,
-}
-
-/// A formula with the brackets that the usual order of operations means: powers before signs and from the right,
-/// `-t^2` is `-(t^2)` and `2^3^2` is `2^(3^2)`. The library takes signs first and powers from the left.
-fn usual_order(text: &str) -> String {
-    let tokens: Vec<&str> = tokens(text);
-    let mut out = String::new();
-    let mut at = 0;
-    while at < tokens.len() {
-        signed(&tokens, &mut at, &mut out);
-    }
-    out
 }
 
 /// Numbers, names (those of any characters in braces) and single characters.
@@ -85,64 +67,6 @@ fn tokens(text: &str) -> Vec<&str> {
     tokens
 }
 
-/// A sign with the power that follows it, a power, or a single operator.
-fn signed(tokens: &[&str], at: &mut usize, out: &mut String) {
-    let after_value = |out: &str| out.ends_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | ')' | '}'));
-    match tokens[*at] {
-        "-" | "+" if !after_value(out) && *at + 1 < tokens.len() => {
-            let minus = tokens[*at] == "-";
-            *at += 1;
-            out.push_str(if minus { "(0-" } else { "(" });
-            let mut operand = String::new();
-            signed(tokens, at, &mut operand);
-            out.push_str(&operand);
-            out.push(')');
-        }
-        _ => power(tokens, at, out),
-    }
-}
-
-fn power(tokens: &[&str], at: &mut usize, out: &mut String) {
-    let mut base = String::new();
-    primary(tokens, at, &mut base);
-    if tokens.get(*at) == Some(&"^") && *at + 1 < tokens.len() {
-        *at += 1;
-        let mut exponent = String::new();
-        signed(tokens, at, &mut exponent);
-        out.push_str(&format!("(({base})^({exponent}))"));
-    } else {
-        out.push_str(&base);
-    }
-}
-
-/// A number, a name with its arguments, something in brackets; or whatever else stands there.
-fn primary(tokens: &[&str], at: &mut usize, out: &mut String) {
-    let name = tokens[*at];
-    // The library knows no exponents of ten.
-    match name.parse::<f64>() {
-        Ok(number) if name.contains(['e', 'E']) && number.is_finite() => out.push_str(&number.to_string()),
-        _ => out.push_str(name),
-    }
-    *at += 1;
-    let is_call = name.starts_with(|c: char| c.is_alphabetic()) && tokens.get(*at) == Some(&"(");
-    if is_call {
-        out.push('(');
-        *at += 1;
-    }
-    if is_call || name == "(" {
-        while *at < tokens.len() && tokens[*at] != ")" {
-            signed(tokens, at, out);
-        }
-        if *at < tokens.len() {
-            out.push(')');
-            *at += 1;
-        }
-    } else if is_call_without_brackets(name, tokens.get(*at)) {
-        out.push(' ');
-        primary(tokens, at, out);
-    }
-}
-
 /// `sin t`: a name before a name or a number.
 fn is_call_without_brackets(name: &str, next: Option<&&str>) -> bool {
     let word = |s: &str| s.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '.');
@@ -161,12 +85,11 @@ impl Formula {
     /// # Errors
     /// What is wrong with the text, in words.
     pub fn parse(text: &str) -> Result<(Self, Vec<String>), String> {
-        let ordered = usual_order(text);
-        let expression = exmex::parse::<f64>(&ordered).map_err(|e| e.to_string())?;
-        let rising = exmex::FlatEx::parse(&ordered).map_err(|e| e.to_string())?;
+        let tokens = tokens(text);
+        let (expression, names) = Expression::parse(&tokens)?;
         let mut speeds = Vec::new();
         let mut variables = Vec::new();
-        for name in expression.var_names() {
+        for name in names {
             match (name.as_str(), name.strip_prefix("w_")) {
                 ("t", _) => variables.push(None),
                 (_, Some(member)) => {
@@ -176,12 +99,9 @@ impl Formula {
                 _ => return Err(format!("`{name}` is neither the time t nor a speed such as w_sun")),
             }
         }
-        let has = |functions: &[&str]| tokens(text).iter().any(|t| functions.contains(t));
+        let has = |functions: &[&str]| tokens.iter().any(|t| functions.contains(t));
         let (jumps, waves) = (has(&JUMPING), has(&WAVES));
-        let spans = (jumps || waves).then(|| exmex::FlatEx::parse(&ordered).map(Box::new));
-        let spans = spans.transpose().map_err(|e| e.to_string())?;
-        let (expression, rising) = (Box::new(expression), Box::new(rising));
-        Ok((Self { text: text.to_owned(), expression, rising, spans, jumps, waves, variables }, speeds))
+        Ok((Self { text: text.to_owned(), expression, jumps, waves, variables }, speeds))
     }
 
     /// The text.
@@ -196,7 +116,7 @@ impl Formula {
 
     /// Value at a time, s, and speeds, rad/s. NaN outside its domain.
     pub fn value(&self, time: f64, speeds: &[f64]) -> f64 {
-        self.evaluate(&self.expression, |v| v.map_or(time, |k| speeds[k])).unwrap_or(f64::NAN)
+        self.expression.value(|k| self.variables[k].map_or(time, |k| speeds[k]))
     }
 
     /// Value at a time as if the formula went on as it is at the time `inside`: a function that jumps stays at the
@@ -225,20 +145,22 @@ impl Formula {
     /// Through how many periods of a function that repeats itself it goes, at most, from a time to a later one while the
     /// speeds stay.
     pub(crate) fn turns(&self, from: f64, to: f64, speeds: &[f64]) -> f64 {
-        let Some(spans) = self.spans.as_ref().filter(|_| self.waves()) else { return 0.0 };
-        let values = |v: &Option<usize>| v.map_or(Span::new(from, to), |k| Span::new(speeds[k], speeds[k]));
-        self.evaluate(spans, values).map_or(f64::INFINITY, |s| s.turns)
+        if !self.waves() {
+            return 0.0;
+        }
+        let values = |k: usize| self.variables[k].map_or(Span::new(from, to), |k| Span::new(speeds[k], speeds[k]));
+        self.expression.value(values).turns
     }
 
     /// A time after `t`, s, before which it does not jump: that of its next jump, or an earlier one where the bounds
     /// of its values do not tell.
     pub fn next_jump(&self, t: f64) -> f64 {
-        let Some(spans) = self.spans.as_ref().filter(|_| self.jumps && self.depends_on_time()) else {
+        if !self.jumps || !self.depends_on_time() {
             return f64::INFINITY;
-        };
+        }
         jumps::next(t, |from, to| {
-            let values = |v: &Option<usize>| v.map_or(Span::new(from, to), |_| Span::ALL);
-            self.evaluate(spans, values).is_none_or(|s| s.jumps)
+            let values = |k: usize| self.variables[k].map_or(Span::new(from, to), |_| Span::ALL);
+            self.expression.value(values).jumps
         })
     }
 
@@ -274,30 +196,10 @@ impl Formula {
     }
 
     fn rising(&self, time: f64, inside: f64, speeds: &[f64]) -> Rising {
-        let rising = self.evaluate(&self.rising, |v| match v {
+        self.expression.value(|k| match self.variables[k] {
             None => Rising(Dual64::from(time).derivative(), inside),
-            Some(k) => Rising::from(speeds[*k]),
-        });
-        rising.unwrap_or_else(|| Rising::from(f64::NAN))
-    }
-
-    fn evaluate<T: exmex::DataType + Copy, O: exmex::MakeOperators<T>>(
-        &self,
-        expression: &exmex::FlatEx<T, O>,
-        value: impl Fn(&Option<usize>) -> T,
-    ) -> Option<T>
-    where
-        T::Err: std::fmt::Debug,
-    {
-        const FEW: usize = 16;
-        let n = self.variables.len();
-        if n > FEW {
-            let all: Vec<T> = self.variables.iter().map(value).collect();
-            return expression.eval(&all).ok();
-        }
-        let mut few = [T::default(); FEW];
-        few.iter_mut().zip(&self.variables).for_each(|(x, v)| *x = value(v));
-        expression.eval(&few[..n]).ok()
+            Some(k) => Rising::from(speeds[k]),
+        })
     }
 }
 
@@ -323,20 +225,6 @@ impl From<f64> for Rising {
     }
 }
 
-impl Default for Rising {
-    fn default() -> Self {
-        Self::from(0.0)
-    }
-}
-
-impl FromStr for Rising {
-    type Err = ParseFloatError;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        text.parse().map(|value: f64| Self::from(value))
-    }
-}
-
 /// Of two, by the order of their values.
 fn lesser(a: Rising, b: Rising, order: Ordering) -> Rising {
     let first = a.0.re.is_nan() || a.0.re.partial_cmp(&b.0.re) == Some(order) || a.0.re == b.0.re;
@@ -349,59 +237,55 @@ fn raise(Rising(a, within): Rising, Rising(b, power): Rising) -> Rising {
     Rising(if b.eps == 0.0 { a.powf(b.re) } else { a.powd(b) }, within.powf(power))
 }
 
-/// The operators of the library for [`f64`], over derivatives.
-#[derive(Clone, Debug)]
-struct RisingOperators;
+impl Number for Rising {
+    fn constant(value: f64) -> Self {
+        Self::from(value)
+    }
 
-impl exmex::MakeOperators<Rising> for RisingOperators {
-    fn make<'a>() -> Vec<Operator<'a, Rising>> {
-        let binary = |apply, prio, is_commutative| BinOp { apply, prio, is_commutative };
-        let unary = Operator::make_unary;
-        let constant = |name, value: f64| Operator::make_constant(name, Rising::from(value));
-        vec![
-            Operator::make_bin("^", binary(raise, 4, false)),
-            Operator::make_bin("*", binary(|a, b| Rising(a.0 * b.0, a.1 * b.1), 2, true)),
-            Operator::make_bin("/", binary(|a, b| Rising(a.0 / b.0, a.1 / b.1), 3, false)),
-            Operator::make_bin_unary("+", binary(|a, b| Rising(a.0 + b.0, a.1 + b.1), 0, true), |a| a),
-            Operator::make_bin_unary("-", binary(|a, b| Rising(a.0 - b.0, a.1 - b.1), 1, false), |a| {
-                Rising(-a.0, -a.1)
-            }),
-            Operator::make_bin("atan2", binary(|y, x| Rising(y.0.atan2(x.0), y.1.atan2(x.1)), 0, false)),
-            Operator::make_bin("min", binary(|a, b| lesser(a, b, Ordering::Less), 0, true)),
-            Operator::make_bin("max", binary(|a, b| lesser(a, b, Ordering::Greater), 0, true)),
-            unary("abs", |a| a.map(|x| if x.re < 0.0 { -x } else { x }, f64::abs)),
-            unary("signum", |a| a.level(f64::signum)),
-            unary("floor", |a| a.level(f64::floor)),
-            unary("round", |a| a.level(f64::round)),
-            unary("ceil", |a| a.level(f64::ceil)),
-            unary("trunc", |a| a.level(f64::trunc)),
-            unary("fract", |a| Rising(a.0 - a.1.trunc(), a.1.fract())),
-            unary("sin", |a| a.map(|x| x.sin(), f64::sin)),
-            unary("cos", |a| a.map(|x| x.cos(), f64::cos)),
-            unary("tan", |a| a.map(|x| x.tan(), f64::tan)),
-            unary("asin", |a| a.map(|x| x.asin(), f64::asin)),
-            unary("acos", |a| a.map(|x| x.acos(), f64::acos)),
-            unary("atan", |a| a.map(|x| x.atan(), f64::atan)),
-            unary("sinh", |a| a.map(|x| x.sinh(), f64::sinh)),
-            unary("cosh", |a| a.map(|x| x.cosh(), f64::cosh)),
-            unary("tanh", |a| a.map(|x| x.tanh(), f64::tanh)),
-            unary("asinh", |a| a.map(|x| x.asinh(), f64::asinh)),
-            unary("acosh", |a| a.map(|x| x.acosh(), f64::acosh)),
-            unary("atanh", |a| a.map(|x| x.atanh(), f64::atanh)),
-            unary("exp", |a| a.map(|x| x.exp(), f64::exp)),
-            unary("sqrt", |a| a.map(|x| x.sqrt(), f64::sqrt)),
-            unary("cbrt", |a| a.map(|x| x.cbrt(), f64::cbrt)),
-            unary("ln", |a| a.map(|x| x.ln(), f64::ln)),
-            unary("log", |a| a.map(|x| x.ln(), f64::ln)),
-            unary("log2", |a| a.map(|x| x.log2(), f64::log2)),
-            unary("log10", |a| a.map(|x| x.log10(), f64::log10)),
-            constant("PI", std::f64::consts::PI),
-            constant("π", std::f64::consts::PI),
-            constant("E", std::f64::consts::E),
-            constant("e", std::f64::consts::E),
-            constant("TAU", std::f64::consts::TAU),
-            constant("τ", std::f64::consts::TAU),
-        ]
+    fn binary(self, operation: Binary, other: Self) -> Self {
+        let (a, b) = (self, other);
+        match operation {
+            Binary::Add => Self(a.0 + b.0, a.1 + b.1),
+            Binary::Subtract => Self(a.0 - b.0, a.1 - b.1),
+            Binary::Multiply => Self(a.0 * b.0, a.1 * b.1),
+            Binary::Divide => Self(a.0 / b.0, a.1 / b.1),
+            Binary::Power => raise(a, b),
+            Binary::Atan2 => Self(a.0.atan2(b.0), a.1.atan2(b.1)),
+            Binary::Min => lesser(a, b, Ordering::Less),
+            Binary::Max => lesser(a, b, Ordering::Greater),
+        }
+    }
+
+    fn unary(self, function: Unary) -> Self {
+        let a = self;
+        match function {
+            Unary::Negative => Self(-a.0, -a.1),
+            Unary::Abs => a.map(|x| if x.re < 0.0 { -x } else { x }, f64::abs),
+            Unary::Signum => a.level(f64::signum),
+            Unary::Floor => a.level(f64::floor),
+            Unary::Round => a.level(f64::round),
+            Unary::Ceil => a.level(f64::ceil),
+            Unary::Trunc => a.level(f64::trunc),
+            Unary::Fract => Self(a.0 - a.1.trunc(), a.1.fract()),
+            Unary::Sin => a.map(|x| x.sin(), f64::sin),
+            Unary::Cos => a.map(|x| x.cos(), f64::cos),
+            Unary::Tan => a.map(|x| x.tan(), f64::tan),
+            Unary::Asin => a.map(|x| x.asin(), f64::asin),
+            Unary::Acos => a.map(|x| x.acos(), f64::acos),
+            Unary::Atan => a.map(|x| x.atan(), f64::atan),
+            Unary::Sinh => a.map(|x| x.sinh(), f64::sinh),
+            Unary::Cosh => a.map(|x| x.cosh(), f64::cosh),
+            Unary::Tanh => a.map(|x| x.tanh(), f64::tanh),
+            Unary::Asinh => a.map(|x| x.asinh(), f64::asinh),
+            Unary::Acosh => a.map(|x| x.acosh(), f64::acosh),
+            Unary::Atanh => a.map(|x| x.atanh(), f64::atanh),
+            Unary::Exp => a.map(|x| x.exp(), f64::exp),
+            Unary::Sqrt => a.map(|x| x.sqrt(), f64::sqrt),
+            Unary::Cbrt => a.map(|x| x.cbrt(), f64::cbrt),
+            Unary::Ln => a.map(|x| x.ln(), f64::ln),
+            Unary::Log2 => a.map(|x| x.log2(), f64::log2),
+            Unary::Log10 => a.map(|x| x.log10(), f64::log10),
+        }
     }
 }
 
@@ -412,8 +296,8 @@ mod tests {
     #[test]
     fn formulas_are_read_in_the_usual_order() {
         let value = |text: &str| match Formula::parse(text) {
-            Ok((formula, _)) => formula.value(3.0, &[2.0]),
-            Err(e) => panic!("{text}: {}: {e}", usual_order(text)),
+            Ok((formula, _)) => formula.value(3.0, &[2.0, 7.0]),
+            Err(e) => panic!("{text}: {e}"),
         };
         let cases = [
             ("-t^2", -9.0),
@@ -431,6 +315,16 @@ mod tests {
             ("-{w_a}^2", -4.0),
             ("-sin t", -(3.0f64.sin())),
             ("2*-3", -6.0),
+            ("7 - 2 - 1 + 4", 8.0),
+            ("12/2*3/9", 2.0),
+            ("sin t^2", 3.0f64.sin().powi(2)),
+            ("sin -t", -(3.0f64.sin())),
+            ("min(t, max(w_a, 2.5)) + atan2(0, 1)", 2.5),
+            ("(t - 0.5) max 0 min 1", 1.0),
+            ("t max 1 + w_a", 5.0),
+            ("t max 7 - w_a", 5.0),
+            ("-((120*((t - 0.5) max 0 min 1)) min (45000/(abs(w_a) max 100)))", -120.0),
+            ("w_b*0 + TAU - 2*π + e - E + w_a", 2.0),
         ];
         for (text, expected) in cases {
             let is = value(text);
@@ -591,19 +485,27 @@ mod tests {
         }
     }
 
-    /// The two readings of a text have the same operators.
+    /// What is wrong is said, and what lies too deep is not read.
     #[test]
-    fn the_value_that_takes_its_rate_along_is_the_value() {
-        let names = <exmex::FloatOpsFactory<f64> as exmex::MakeOperators<f64>>::make();
-        let mine = <RisingOperators as exmex::MakeOperators<Rising>>::make();
-        let all = |texts: Vec<&str>| {
-            let mut t = texts;
-            t.sort_unstable();
-            t.join(" ")
-        };
-        let spans = <SpanOperators as exmex::MakeOperators<Span>>::make();
-        let expected = all(names.iter().map(|o| o.repr()).collect());
-        assert_eq!(all(mine.iter().map(|o| o.repr()).collect()), expected);
-        assert_eq!(all(spans.iter().map(|o| o.repr()).collect()), expected);
+    fn what_is_wrong_with_a_formula_is_said() {
+        let deep = ["(", "-", "2^", "sin "].map(|part| part.repeat(100_000) + "t");
+        let cases = [
+            ("2*", "it ends where a value should be"),
+            ("(t + 1", "a `)` is missing at the end"),
+            ("t)", "there is a `)` without a `(`"),
+            ("t t", "an operator is missing before `t`"),
+            ("sin", "`sin` has no argument"),
+            ("max(t)", "there is `)` where `,` should be"),
+            ("2 + * t", "there is `*` where a value should be"),
+            ("1.2.3*t", "`1.2.3` is no number"),
+            ("{w_a", "the `}` of `{w_a` is missing"),
+            ("x", "`x` is neither the time t nor a speed such as w_sun"),
+        ];
+        for (text, why) in cases {
+            assert_eq!(Formula::parse(text).unwrap_err(), why, "{text}");
+        }
+        for text in deep {
+            assert!(Formula::parse(&text).unwrap_err().contains("256 deep"), "{}", &text[..4]);
+        }
     }
 }

@@ -25,7 +25,7 @@ use crate::train::{Efficiency, FRAME, MemberId, MemberKind, Set, ShiftElementId,
 use crate::units::Time;
 
 const MOST_SAMPLES: i64 = 10_000_000;
-/// A longer formula is no formula; parsing it takes time that grows with its square.
+/// A longer formula is no formula.
 const MOST_FORMULA: usize = 2000;
 /// How far a given orbit may differ from the centre distance of the teeth.
 const SAME_ORBIT: f64 = 0.01;

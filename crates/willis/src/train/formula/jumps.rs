@@ -6,10 +6,8 @@
 //! others finds the first one to the last digits of its time.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::num::ParseFloatError;
-use std::str::FromStr;
 
-use exmex::{BinOp, Operator};
+use super::expression::{Binary, Number, Unary};
 
 /// Jumps closer to each other than this part of their time, or of a millisecond, count as one: several functions of a
 /// formula that jump at once do so to their own rounding, and a run takes steps between jumps.
@@ -192,81 +190,56 @@ impl Span {
     }
 }
 
-impl FromStr for Span {
-    type Err = ParseFloatError;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        text.parse().map(|x: f64| Self::new(x, x))
+impl Number for Span {
+    fn constant(value: f64) -> Self {
+        Self::new(value, value)
     }
-}
 
-/// The operators of the library for [`f64`], over stretches.
-#[derive(Clone, Debug)]
-pub(super) struct SpanOperators;
+    fn binary(self, operation: Binary, other: Self) -> Self {
+        let (a, b) = (self, other);
+        let of = match operation {
+            Binary::Add => Self::new(a.low + b.low, a.high + b.high),
+            Binary::Subtract => Self::new(a.low - b.high, a.high - b.low),
+            Binary::Multiply => Self::corners(a, b, |a, b| a * b),
+            Binary::Divide => return a.divided(b),
+            Binary::Power => return a.raised(b),
+            Binary::Atan2 => return a.angle(b),
+            Binary::Min => Self::new(a.low.min(b.low), a.high.min(b.high)),
+            Binary::Max => Self::new(a.low.max(b.low), a.high.max(b.high)),
+        };
+        of.after(a).after(b)
+    }
 
-impl exmex::MakeOperators<Span> for SpanOperators {
-    fn make<'a>() -> Vec<Operator<'a, Span>> {
-        let binary = |apply, prio, is_commutative| BinOp { apply, prio, is_commutative };
-        let unary = Operator::make_unary;
-        let constant = |name, value: f64| Operator::make_constant(name, Span::new(value, value));
-        fn positive(a: Span, f: fn(f64) -> f64) -> Span {
-            a.clip(0.0, f64::INFINITY).monotonic(f)
+    fn unary(self, function: Unary) -> Self {
+        let a = self;
+        let positive = |f: fn(f64) -> f64| a.clip(0.0, f64::INFINITY).monotonic(f);
+        match function {
+            Unary::Negative => Self { low: -a.high, high: -a.low, ..a },
+            Unary::Abs => a.abs(),
+            Unary::Signum => a.level(f64::signum),
+            Unary::Floor => a.level(f64::floor),
+            Unary::Round => a.level(f64::round),
+            Unary::Ceil => a.level(f64::ceil),
+            Unary::Trunc => a.level(f64::trunc),
+            Unary::Fract => a.fract(),
+            Unary::Sin => a.wave(f64::sin, FRAC_PI_2),
+            Unary::Cos => a.wave(f64::cos, 0.0),
+            Unary::Tan => a.tan(),
+            Unary::Asin => a.clip(-1.0, 1.0).monotonic(f64::asin),
+            Unary::Acos => a.clip(-1.0, 1.0).monotonic(f64::acos),
+            Unary::Atan => a.monotonic(f64::atan),
+            Unary::Sinh => a.monotonic(f64::sinh),
+            Unary::Cosh => a.abs().monotonic(f64::cosh),
+            Unary::Tanh => a.monotonic(f64::tanh),
+            Unary::Asinh => a.monotonic(f64::asinh),
+            Unary::Acosh => a.clip(1.0, f64::INFINITY).monotonic(f64::acosh),
+            Unary::Atanh => a.clip(-1.0, 1.0).monotonic(f64::atanh),
+            Unary::Exp => a.monotonic(f64::exp),
+            Unary::Sqrt => positive(f64::sqrt),
+            Unary::Cbrt => a.monotonic(f64::cbrt),
+            Unary::Ln => positive(f64::ln),
+            Unary::Log2 => positive(f64::log2),
+            Unary::Log10 => positive(f64::log10),
         }
-        vec![
-            Operator::make_bin("^", binary(Span::raised, 4, false)),
-            Operator::make_bin("*", binary(|a, b| Span::corners(a, b, |a, b| a * b).after(a).after(b), 2, true)),
-            Operator::make_bin("/", binary(Span::divided, 3, false)),
-            Operator::make_bin_unary(
-                "+",
-                binary(|a, b| Span::new(a.low + b.low, a.high + b.high).after(a).after(b), 0, true),
-                |a| a,
-            ),
-            Operator::make_bin_unary(
-                "-",
-                binary(|a, b| Span::new(a.low - b.high, a.high - b.low).after(a).after(b), 1, false),
-                |a| Span { low: -a.high, high: -a.low, ..a },
-            ),
-            Operator::make_bin("atan2", binary(Span::angle, 0, false)),
-            Operator::make_bin(
-                "min",
-                binary(|a, b| Span::new(a.low.min(b.low), a.high.min(b.high)).after(a).after(b), 0, true),
-            ),
-            Operator::make_bin(
-                "max",
-                binary(|a, b| Span::new(a.low.max(b.low), a.high.max(b.high)).after(a).after(b), 0, true),
-            ),
-            unary("abs", Span::abs),
-            unary("signum", |a| a.level(f64::signum)),
-            unary("floor", |a| a.level(f64::floor)),
-            unary("round", |a| a.level(f64::round)),
-            unary("ceil", |a| a.level(f64::ceil)),
-            unary("trunc", |a| a.level(f64::trunc)),
-            unary("fract", Span::fract),
-            unary("sin", |a| a.wave(f64::sin, FRAC_PI_2)),
-            unary("cos", |a| a.wave(f64::cos, 0.0)),
-            unary("tan", Span::tan),
-            unary("asin", |a| a.clip(-1.0, 1.0).monotonic(f64::asin)),
-            unary("acos", |a| a.clip(-1.0, 1.0).monotonic(f64::acos)),
-            unary("atan", |a| a.monotonic(f64::atan)),
-            unary("sinh", |a| a.monotonic(f64::sinh)),
-            unary("cosh", |a| a.abs().monotonic(f64::cosh)),
-            unary("tanh", |a| a.monotonic(f64::tanh)),
-            unary("asinh", |a| a.monotonic(f64::asinh)),
-            unary("acosh", |a| a.clip(1.0, f64::INFINITY).monotonic(f64::acosh)),
-            unary("atanh", |a| a.clip(-1.0, 1.0).monotonic(f64::atanh)),
-            unary("exp", |a| a.monotonic(f64::exp)),
-            unary("sqrt", |a| positive(a, f64::sqrt)),
-            unary("cbrt", |a| a.monotonic(f64::cbrt)),
-            unary("ln", |a| positive(a, f64::ln)),
-            unary("log", |a| positive(a, f64::ln)),
-            unary("log2", |a| positive(a, f64::log2)),
-            unary("log10", |a| positive(a, f64::log10)),
-            constant("PI", PI),
-            constant("π", PI),
-            constant("E", std::f64::consts::E),
-            constant("e", std::f64::consts::E),
-            constant("TAU", TAU),
-            constant("τ", TAU),
-        ]
     }
 }
