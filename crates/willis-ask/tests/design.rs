@@ -102,7 +102,7 @@ fn what_is_wrong_is_said() {
         (json!({ "kind": "3k", "ratio": "100", "backward": "1.2" }), "no efficiency is above 1"),
         (json!({ "kind": "3k", "ratio": "100", "module": ["-1 mm"] }), "must be above 0"),
         (json!({ "file": robot(), "sort": "cheapest" }), "nothing that a design is judged by"),
-        (json!({ "file": robot(), "shard": "0/3" }), "no part of a search"),
+        (json!({ "file": robot(), "shard": "0/3" }), "no part 0 of 3"),
         (json!({ "file": robot(), "write": [0] }), "counted from 1"),
         (file(""), "no ratio is asked for"),
         (file("[design"), "mine.toml"),

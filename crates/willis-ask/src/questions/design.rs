@@ -154,9 +154,7 @@ impl Design {
 
     fn request(&self) -> Result<teeth::Request, Refusal> {
         let mut wrong = Diagnostics::default();
-        let mut request = teeth::Request::default();
-        request.top = self.top;
-        request.all = self.all;
+        let mut request = teeth::Request { top: self.top, all: self.all, ..teeth::Request::default() };
         if let Some(sort) = &self.sort {
             match sort.parse::<Objective>() {
                 Ok(sort) => request.sort = Some(sort),
@@ -169,7 +167,7 @@ impl Design {
         if let Some(shard) = &self.shard {
             match part(shard) {
                 Ok(shard) => request.shard = Some(shard),
-                Err(d) => wrong.push(d),
+                Err(d) => wrong.push(*d),
             }
         }
         // Rows that are written are among those that are shown.

@@ -5,14 +5,28 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 
 use crate::Refusal;
 
+/// The most parts into which a search is cut.
+const MOST: u64 = 1_000_000;
+
 /// `2/8` as the number of a part, from 1, and how many there are.
-pub(super) fn part(text: &str) -> Result<(u64, u64), Diagnostic> {
+pub(super) fn part(text: &str) -> Result<(u64, u64), Box<Diagnostic>> {
     let whole = |t: &str| t.trim().parse::<u64>().ok();
-    let read = text.split_once('/').and_then(|(k, n)| Some((whole(k)?, whole(n)?)));
-    read.filter(|(k, n)| (1..=*n).contains(k) && *n <= 1_000_000).ok_or_else(|| {
-        let d = Diagnostic::new(Code::OutOfRange, "shard", format!("`{text}` is no part of a search"));
-        d.hint("write the number of the part, from 1, and how many there are: 2/8")
-    })
+    let wrong = |code, message: String, hint: String| Err(Diagnostic::new(code, "shard", message).hint(hint).into());
+    let shown = willis::diagnostic::printable(text);
+    match text.split_once('/').and_then(|(k, n)| Some((whole(k)?, whole(n)?))) {
+        Some((_, n)) if n > MOST => {
+            wrong(Code::OutOfRange, format!("`{shown}`: too many parts"), format!("there can be {MOST} at most"))
+        }
+        Some((k, n)) if (1..=n).contains(&k) => Ok((k, n)),
+        Some((k, n)) => {
+            let hint = "parts are counted from 1, as in 3/16";
+            wrong(Code::OutOfRange, format!("there is no part {k} of {n}"), hint.into())
+        }
+        None => {
+            let hint = "write 3/16: part 3 of 16";
+            wrong(Code::WrongType, format!("`{shown}` is no part of a search"), hint.into())
+        }
+    }
 }
 
 /// All parts, as they were written, together; none where there are none.

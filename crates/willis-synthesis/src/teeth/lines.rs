@@ -69,12 +69,12 @@ impl Lines {
             let at = |v: f64| above * (v * self.sun - self.sun - r1) / (below + v * slope);
             let [x, y] = ends.map(at);
             let pole = above / (r1 - p1);
-            let delicate = !(x <= y) | ((x < pole) != (y < pole)) | !(x.abs() <= f64::MAX) | !(y.abs() <= f64::MAX);
+            let is_plain = (x <= y) & (x.abs() <= f64::MAX) & (y.abs() <= f64::MAX) & ((x < pole) == (y < pole));
             // The largest whole number below the upper end, by what the sum with a large number keeps.
             const SHIFT: f64 = 6_755_399_441_055_744.0;
             let last = ((y.min(high + 1.0) + 2.0 * NEAR - 0.5) + SHIFT) - SHIFT;
             let holds = (last >= x - 2.0 * NEAR) & (x <= high + 0.5) & (y >= low - 0.5);
-            *mark = u64::from((delicate | holds) & (low <= high) & (a > 0.0));
+            *mark = u64::from((!is_plain | holds) & (low <= high) & (a > 0.0));
         }
     }
 }

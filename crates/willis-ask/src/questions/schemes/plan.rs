@@ -12,13 +12,12 @@ use willis_synthesis::schemes::{
     SetRatio, Wish, usual_ratios,
 };
 
+use super::super::parts::part;
 use super::{HybridResult, SchemeResult, Schemes, SchemesAnswer};
 use crate::{Attachment, Refusal};
 
 /// The most rows that are shown: each is analysed.
 const MOST_SHOWN: usize = 50_000;
-/// The most parts into which a search is cut.
-const MOST_SHARDS: usize = 1_000_000;
 /// Tooth ratios, modes and rows that a list may have.
 const MOST_LISTED: usize = 1000;
 
@@ -50,6 +49,9 @@ enum Kept {
 /// Everything that is wrong with a request.
 #[derive(Default)]
 struct Wrong(Diagnostics);
+
+/// A layout, and the tooth ratios of the train file from which it comes.
+type OfFile = (Layout, Option<Vec<SetRatio>>);
 
 impl Wrong {
     fn say(&mut self, code: Code, message: impl Into<String>, hint: impl Into<String>) {
@@ -184,33 +186,17 @@ impl Schemes {
     }
 
     fn shard_of(&self, wrong: &mut Wrong) -> Option<[usize; 2]> {
-        let text = self.shard.as_ref()?;
-        let parts = text.split_once('/').and_then(|(k, n)| Some([k.trim().parse().ok()?, n.trim().parse().ok()?]));
-        match parts {
-            Some([_, n]) if n > MOST_SHARDS => {
-                wrong.say(
-                    Code::OutOfRange,
-                    format!("shard {}: too many parts", shown(text)),
-                    format!("{MOST_SHARDS} at most"),
-                );
-            }
-            Some([k, n]) if (1..=n).contains(&k) => return Some([k - 1, n]),
-            Some([k, n]) => {
-                wrong.say(
-                    Code::OutOfRange,
-                    format!("there is no part {k} of {n}"),
-                    "parts are counted from 1, as in 3/16",
-                );
-            }
-            None => {
-                wrong.say(Code::WrongType, format!("shard {}: is no part", shown(text)), "write 3/16: part 3 of 16")
+        match part(self.shard.as_ref()?) {
+            Ok((k, n)) => Some([usize::try_from(k - 1).ok()?, usize::try_from(n).ok()?]),
+            Err(d) => {
+                wrong.0.push(*d);
+                None
             }
         }
-        None
     }
 
     /// The layout, and the tooth ratios of its train file.
-    fn layout_of(&self, wrong: &mut Wrong) -> Result<Option<(Layout, Option<Vec<SetRatio>>)>, Refusal> {
+    fn layout_of(&self, wrong: &mut Wrong) -> Result<Option<OfFile>, Refusal> {
         let Some(file) = &self.layout else { return Ok(None) };
         if file.text.is_empty() && is_digits(&file.name) {
             let hint = "three digits for each set: the shafts of sun, ring and carrier; 0 is the input, 1 the output, 2 the \
@@ -232,7 +218,7 @@ impl Schemes {
     /// The tooth ratio of each set; none where it is not known how many there are.
     fn ratios(
         &self,
-        layout: Option<&(Layout, Option<Vec<SetRatio>>)>,
+        layout: Option<&OfFile>,
         wrong: &mut Wrong,
         assumptions: &mut Vec<String>,
     ) -> Option<Vec<SetRatio>> {
