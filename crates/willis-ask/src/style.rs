@@ -1,6 +1,7 @@
 //! How answers are set for eyes: numbers, tables, lines. Styles are ANSI escapes; [`plain`] takes them off.
 
 use comfy_table::{CellAlignment, Table, presets};
+use willis::analysis::{BandEnd, LawBand, OutsideLaw};
 use willis::diagnostic::is_printable;
 
 /// A speed in rpm, from rad/s.
@@ -31,6 +32,59 @@ pub fn significant(x: f64, digits: i32) -> String {
 /// A count with its word: `1 mesh`, `2 meshes`.
 pub fn plural(n: usize, one: &str, many: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { many })
+}
+
+/// An efficiency with what other laws of loss make of it, in the digits that they support:
+/// `98.4 %; 97.6 to 99.3 % over laws in range`. Laws in force that are outside their ranges are named.
+pub fn efficiency(value: f64, band: Option<&LawBand>, outside: &[OutsideLaw]) -> String {
+    let mut text = match band {
+        None => percent(value),
+        Some(band) => {
+            let decimals = band.decimals();
+            let [value, low, high] =
+                [value, band.low.efficiency, band.high.efficiency].map(|e| format!("{:.decimals$}", 100.0 * e));
+            let which = if band.beyond_ranges() { "laws, some outside their ranges" } else { "laws in range" };
+            format!("{value} %; {low} to {high} % over {which}")
+        }
+    };
+    let mut laws: Vec<(String, Vec<&str>)> = vec![];
+    // A film says how teeth run, and its own warning says so; what they lose is what friction says.
+    for o in outside.iter().filter(|o| !o.family.starts_with("film")) {
+        let law = format!("{} = {}", o.family, o.law);
+        match laws.iter_mut().find(|l| l.0 == law) {
+            Some(own) => own.1.push(&o.symbol),
+            None => laws.push((law, vec![&o.symbol])),
+        }
+    }
+    for (law, symbols) in laws {
+        text += &format!("; {law} outside its range in {}", symbols.join(", "));
+    }
+    text
+}
+
+/// The same in a cell of a table: `98.4 % (97.6..99.3)`.
+pub fn efficiency_cell(value: f64, band: Option<&LawBand>) -> String {
+    let Some(band) = band else { return percent(value) };
+    let decimals = band.decimals();
+    let [value, low, high] =
+        [value, band.low.efficiency, band.high.efficiency].map(|e| format!("{:.decimals$}", 100.0 * e));
+    format!("{value} % ({low}..{high})")
+}
+
+/// The laws at both ends of a band: `97.6 % by mesh_friction = constant; 99.3 % by …`.
+pub fn band_ends(band: &LawBand) -> String {
+    let decimals = band.decimals();
+    let end = |end: &BandEnd| {
+        let laws: Vec<String> = end.laws.iter().map(|(family, law)| format!("{family} = {law}")).collect();
+        format!("{:.decimals$} % by {}", 100.0 * end.efficiency, laws.join(", "))
+    };
+    format!("{}; {}", end(&band.low), end(&band.high))
+}
+
+/// What is assumed, one a line under a heading.
+pub fn assumptions(all: &[String]) -> String {
+    let lines = all.iter().map(|line| wrap(line, "  · ") + "\n");
+    std::iter::once(bold("Assumptions in force") + "\n").chain(lines).collect()
 }
 
 /// An empty table without lines.

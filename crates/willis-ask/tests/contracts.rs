@@ -190,6 +190,22 @@ fn check_names(what: &str, table: &Table, dimensions: &mut BTreeMap<String, (Str
     }
 }
 
+/// Questions in whose answers laws compute losses: they name every assumption that `analyze` names.
+const COMPUTES: [&str; 12] = [
+    "analyze",
+    "table",
+    "losses",
+    "flow",
+    "sensitivity",
+    "uncertainty",
+    "cycle",
+    "sweep",
+    "compare",
+    "export",
+    "heat",
+    "calibrate",
+];
+
 /// The questions that take longest.
 const LONG: [&str; 4] = ["draw", "formula", "report", "uncertainty"];
 
@@ -243,6 +259,13 @@ fn examine(chosen: fn(&str) -> bool) {
                     }
                 };
                 let json = answer.json();
+                if let Some(given) = of.first().filter(|_| COMPUTES.contains(&entry.name)) {
+                    let train = given.model.train();
+                    for line in willis::analysis::assumptions(train).into_iter().filter(|_| train.is_physical()) {
+                        let line = serde_json::to_string(&line).unwrap();
+                        assert!(json.contains(&line), "{what} does not say that it assumes {line}");
+                    }
+                }
                 let back = entry.reread(&json).unwrap_or_else(|e| panic!("{what}: {e}\n{json}"));
                 assert_eq!(back + "\n", json, "{what}");
                 checker.check(entry.name, &json, &what);

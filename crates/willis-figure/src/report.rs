@@ -264,7 +264,7 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
     let train = model.train();
     let selection = Selection { state: None, operation: request.operation.clone() };
     work.afford(&Effort::of_analysis(train, &selection))?;
-    let analysis = analyze(train, &selection)?.with_loads(train);
+    let analysis = analyze(train, &selection)?.with_loads(train).with_bands(train);
     // Only the first operation's is shown.
     let first = analysis.operations.first().map(|o| Selection { operation: Some(o.name.clone()), ..selection });
     let sensitivity = first.map(|first| sensitivity(train, &first));

@@ -6,6 +6,7 @@
 
 mod at_load;
 mod balance;
+mod band;
 mod doubts;
 mod effort;
 mod heat;
@@ -25,6 +26,7 @@ mod why;
 mod words;
 
 pub use at_load::{AskedLoad, AtLoad, DrivingLoad, idle};
+pub use band::{BandEnd, FamilyBand, LawBand};
 pub use doubts::{Doubt, DoubtKind};
 pub use heat::{HeatBasis, HeatEquilibrium, HeatFlow, HeatPoint, HeatReport, PlaceReport};
 pub(crate) use heat::{Losses as HeatOfLosses, NoHeat, placed as heat_placed};
@@ -558,6 +560,9 @@ pub struct OperationReport {
     /// Temperatures and heat, where the train says what carries heat away.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heat: Option<Box<HeatReport>>,
+    /// Between which values other laws put the efficiency, where [`Analysis::with_bands`] asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band: Option<Box<LawBand>>,
     /// Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium).
     pub solutions: Vec<SolutionReport>,
     /// Of a locked train: equilibria in which every loaded member must push.
@@ -607,6 +612,7 @@ impl OperationReport {
             speed_deviation: None,
             speeds_rad_s: speeds,
             heat: None,
+            band: None,
             solutions: vec![],
             dissipative_solutions: vec![],
         }
@@ -686,6 +692,30 @@ impl Analysis {
             for (name, row) in &mut self.ratios.0 {
                 row.at_load = loads.at(train.states.iter().position(|s| s.name == *name));
             }
+        }
+        self
+    }
+
+    /// The same with what other laws of loss make of every efficiency that laws compute: [`OperationReport::band`], and
+    /// [`AtLoad::band`] of gears at a load. It takes some twenty operating points in floating point each.
+    ///
+    /// An example is at [`LawBand::decimals`].
+    pub fn with_bands(mut self, train: &Train) -> Self {
+        for report in &mut self.operations {
+            let Ok(operation) = train.find_operation(&report.name) else { continue };
+            let temperature = report.oil_k(train, operation);
+            report.band = LawBand::of(train, &Operation { temperature, ..operation.clone() }).map(Box::new);
+        }
+        for (name, row) in &mut self.ratios.0 {
+            let Some(at) = &mut row.at_load else { continue };
+            // Where the operation whose load it is runs in this gear, it is the same point.
+            let own = |o: &&OperationReport| {
+                at.operation.as_ref() == Some(&o.name) && o.state.as_deref().unwrap_or(AS_DRAWN) == *name
+            };
+            at.band = match self.operations.iter().find(own) {
+                Some(operation) => operation.band.clone(),
+                None => at.law_band(train, train.states.iter().position(|s| s.name == *name)).map(Box::new),
+            };
         }
         self
     }
@@ -880,6 +910,15 @@ pub fn operate_unnamed(train: &Train, operation: &Operation) -> Result<(Operatio
     let settled =
         at_its_temperature(train, operation, false).map_err(|wrong| words::refused(train, operation, &wrong))?;
     Ok((settled.report, words::found(train, operation, &settled.findings)))
+}
+
+/// Between which values other laws put the efficiency of an operating point; `None` where none changes it.
+pub(crate) fn law_band(train: &Train, operation: &Operation) -> Option<LawBand> {
+    if !train.depends_on_load() {
+        return None;
+    }
+    let (report, _) = operate_unnamed(train, operation).ok()?;
+    LawBand::of(train, &Operation { temperature: report.oil_k(train, operation), ..operation.clone() })
 }
 
 /// What the model leaves out, then what stands in for missing data.

@@ -37,7 +37,8 @@ use std::collections::{BTreeMap, BinaryHeap};
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, OperationReport, Role, Selection, SolutionReport, UnitPoint, Verdict, analyze, assumptions,
+    Analysis, LawBand, OperationReport, OutsideLaw, Role, Selection, SolutionReport, UnitPoint, Verdict, analyze,
+    assumptions, law_band,
 };
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -242,6 +243,12 @@ pub struct OperationFlow {
     pub verdict: Verdict,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
+    /// Between which values other laws put the efficiency, where [`FlowReport::with_bands`] asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band: Option<Box<LawBand>>,
+    /// Laws that were used outside their ranges.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_laws: Vec<OutsideLaw>,
     /// Every equilibrium.
     pub solutions: Vec<Hypergraph>,
     /// Of a locked train: equilibria in which every loaded member must push.
@@ -268,6 +275,46 @@ pub struct FlowReport {
 }
 
 impl FlowReport {
+    /// The same with what other laws of loss make of every efficiency that laws compute: [`OperationFlow::band`].
+    ///
+    /// # Example
+    /// ```
+    /// use willis::Selection;
+    /// use willis::hypergraph::flows_seen_from;
+    /// use willis::train::Train;
+    ///
+    /// let train = Train::from_toml(r#"
+    ///     format = 1
+    ///     name = "one set"
+    ///     members = ["s", "c"]
+    ///     terminals = ["s", "c"]
+    ///     [oil]
+    ///     name = "ISO VG 220"
+    ///     temperature = "70 degC"
+    ///     [[set]]
+    ///     name = "P1"
+    ///     sun = { member = "s", teeth = 30 }
+    ///     planet = { teeth = 20, count = 4 }
+    ///     ring = { member = "frame", teeth = 70 }
+    ///     carrier = "c"
+    ///     geometry = { module = "2 mm", width = "25 mm", roughness = "0.4 um" }
+    ///     [[operation]]
+    ///     name = "full load"
+    ///     speeds = { s = "1000 rpm" }
+    ///     torques = { s = "200 N m" }
+    /// "#)?;
+    /// let report = flows_seen_from(&train, &Selection::default(), None)?.with_bands(&train);
+    /// assert!(report.operations[0].band.is_some());
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn with_bands(mut self, train: &Train) -> Self {
+        for flow in self.operations.iter_mut().filter(|flow| flow.unit.is_none()) {
+            let operation = train.find_operation(&flow.name).ok();
+            flow.band = operation.and_then(|o| law_band(train, o)).map(Box::new);
+        }
+        self
+    }
+
     /// The report of power flows that were made from an analysis with [`flow_of`].
     pub fn of(analysis: &Analysis, operations: Vec<OperationFlow>) -> Self {
         Self {
@@ -395,6 +442,8 @@ fn flow(train: &Train, o: &OperationReport, seen_from: MemberId) -> Result<Opera
         unit: None,
         verdict: o.verdict,
         reason: o.reason.clone(),
+        band: o.band.clone(),
+        outside_laws: o.outside_laws.clone(),
         solutions: graphs(&o.solutions)?,
         dissipative_solutions: graphs(&o.dissipative_solutions)?,
     })
@@ -428,7 +477,18 @@ fn per_unit(train: &Train, selection: &Selection, seen_from: MemberId) -> Result
                 let (name, state) = (state.name.clone(), Some(state.name.clone()));
                 let verdict = Verdict::Undetermined;
                 let (solutions, dissipative_solutions) = (vec![], vec![]);
-                all.push(OperationFlow { name, state, unit: None, verdict, reason, solutions, dissipative_solutions });
+                let (band, outside_laws) = (None, vec![]);
+                all.push(OperationFlow {
+                    name,
+                    state,
+                    unit: None,
+                    verdict,
+                    reason,
+                    band,
+                    outside_laws,
+                    solutions,
+                    dissipative_solutions,
+                });
                 first.get_or_insert(why);
             }
         }

@@ -780,6 +780,23 @@ impl Train {
         plain
     }
 
+    /// The law of a family that this train uses.
+    pub(crate) fn law_in_force(&self, family: &str) -> Option<&'static str> {
+        let friction = self.laws.mesh_friction(self.lubrication.is_some());
+        match family {
+            "mesh_friction" => Some(friction.meta().id),
+            "rolling" => self.laws.rolling(&friction).map(|r| r.meta().id),
+            _ => {
+                let own = crate::losses::entries().into_iter().filter(|e| e.family == family);
+                let is_in_force = |id: &str| {
+                    let mut laws = self.laws;
+                    laws.choose(family, id).is_ok() && laws == self.laws
+                };
+                own.map(|e| e.id).find(|id| is_in_force(id))
+            }
+        }
+    }
+
     /// The same train with another law in one family.
     ///
     /// # Errors

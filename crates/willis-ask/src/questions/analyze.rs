@@ -50,7 +50,7 @@ impl Question for Analyze {
         let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
         work.afford(&Effort::of_analysis(of[0].model.train(), &selection))?;
         let train = of[0].model.train();
-        Ok(analysis::analyze(train, &selection)?.with_loads(train))
+        Ok(analysis::analyze(train, &selection)?.with_loads(train).with_bands(train))
     }
 
     fn text(&self, answer: &Analysis, of: &[Given]) -> String {

@@ -61,6 +61,9 @@ pub struct ExportAnswer {
     /// What the train file says and the files do not.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_carried: Vec<NotCarried>,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assumptions: Vec<String>,
     /// The kinds there are, where no kind was named.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kinds: Vec<OneKind>,
@@ -112,6 +115,7 @@ impl Question for Export {
             files: vec![],
             notes: vec![],
             not_carried: vec![],
+            assumptions: vec![],
             kinds: vec![],
         };
         let kind = match (self.kind.as_deref().filter(|k| *k != "list"), of) {
@@ -141,6 +145,7 @@ impl Question for Export {
             files: done.files.into_iter().map(file).collect(),
             notes: done.notes,
             not_carried: done.not_carried,
+            assumptions: done.assumptions,
             ..answer(Some(kind))
         })
     }
@@ -161,6 +166,7 @@ impl Question for Export {
     }
 
     fn told(&self, answer: &ExportAnswer) -> Vec<String> {
-        answer.notes.iter().map(|n| wrap(n, "note: ")).collect()
+        let notes = answer.notes.iter().map(|n| wrap(n, "note: "));
+        notes.chain(answer.assumptions.iter().map(|a| wrap(&format!("assumed: {a}"), "note: "))).collect()
     }
 }

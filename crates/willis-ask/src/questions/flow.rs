@@ -46,7 +46,7 @@ impl Question for Flow {
         let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
         work.afford(&Effort::of_analysis(of[0].model.train(), &selection))?;
         let train = of[0].model.train();
-        Ok(flows_seen_from(train, &selection, self.seen_from.as_deref())?)
+        Ok(flows_seen_from(train, &selection, self.seen_from.as_deref())?.with_bands(train))
     }
 
     fn text(&self, answer: &FlowReport, _: &[Given]) -> String {

@@ -64,6 +64,9 @@ impl Question for Losses {
                 .map(Quantity::si)
                 .collect(),
             compare: self.compare.clone(),
+            // Of a few points, not of a map.
+            bands: self.compare.is_none()
+                && [&self.speeds, &self.powers, &self.torques, &self.temperature].iter().all(|v| v.is_empty()),
         };
         let train = of[0].model.train();
         work.afford(&Effort::of_points(train, request.points(train)))?;

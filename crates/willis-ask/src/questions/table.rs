@@ -82,7 +82,7 @@ impl Question for Table {
         let asked = AskedLoad { speed, torque, temperature: temperature.map(|t| t.si()) };
         let load = (!self.lossless).then_some(asked);
         let request = ShaftTableRequest { state: self.state.clone(), lossless: self.lossless, load };
-        Ok(analysis::shaft_table(train, &request)?)
+        Ok(analysis::shaft_table(train, &request)?.with_bands(train))
     }
 
     fn text(&self, answer: &ShaftTable, _: &[Given]) -> String {

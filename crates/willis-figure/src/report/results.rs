@@ -218,7 +218,19 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
 /// that comes from, and laws that are used outside their ranges.
 fn value(all: &Findings<'_>, o: &OperationReport) -> Option<Block> {
     let s = single(o)?;
-    let mut text = format!("Value: efficiency {}, {}.", efficiency(s), basis(s));
+    let mut text = match (&o.band, s.efficiency) {
+        (Some(band), Some(value)) => {
+            let decimals = band.decimals();
+            let percent = |e: f64| format!("{:.decimals$} %", 100.0 * e);
+            let [low, high] = [&band.low, &band.high].map(|end| {
+                let laws: Vec<String> = end.laws.iter().map(|(f, law)| format!("{f} = {law}")).collect();
+                format!("{} ({})", percent(end.efficiency), laws.join(", "))
+            });
+            let which = if band.beyond_ranges() { "laws, some outside their ranges" } else { "laws in range" };
+            format!("Value: efficiency {}, {}; over {which} from {low} to {high}.", percent(value), basis(s))
+        }
+        _ => format!("Value: efficiency {}, {}.", efficiency(s), basis(s)),
+    };
     if let Some(sure) = all.sure(&o.name) {
         text += &format!(" {}", sure.words());
     }

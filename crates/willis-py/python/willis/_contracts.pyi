@@ -59,6 +59,55 @@ class AnalyzeDirection(Record):
     def why(self) -> Any | None:
         """What ``reason`` says, as data."""
 
+class AnalyzeBandEnd(Record):
+    """An end of a band, which ``--law`` reproduces."""
+    @property
+    def efficiency(self) -> float:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def laws(self) -> Named[str]:
+        """The law of each family in the band."""
+
+class AnalyzeFamilyBand(Record):
+    """The laws of one family."""
+    @property
+    def law(self) -> str:
+        """The law in force."""
+    @property
+    def in_range(self) -> bool:
+        """Whether that is inside its range here."""
+    @property
+    def efficiencies(self) -> Named[float]:
+        """The efficiency with each law that counts."""
+    @property
+    def beyond_ranges(self) -> bool:
+        """Whether these are counted although fewer than two laws are inside their ranges."""
+    @property
+    def left_out(self) -> list[str]:
+        """Laws that do not count: outside their ranges, or without one answer."""
+
+class AnalyzeLawBand(Record):
+    """What an efficiency would be with other laws of loss: how far it is known.
+
+    Every law of each kind of loss is put in the place of the law in force, then the costliest and the cheapest law
+    of all kinds together. Laws outside their ranges count only where fewer than two are inside. Laws that reproduce
+    a published error, and those that leave a loss out, do not count. The oil temperature is held, and so are film,
+    loss factor and load sharing, which belong to the law of friction."""
+    @property
+    def low(self) -> AnalyzeBandEnd:
+        """The lowest efficiency."""
+    @property
+    def high(self) -> AnalyzeBandEnd:
+        """The highest efficiency."""
+    @property
+    def families(self) -> Named[AnalyzeFamilyBand]:
+        """By family, what its laws give while the other families keep theirs."""
+
 class AnalyzeLosses(Record):
     """Losses by kind, W."""
     @property
@@ -138,6 +187,9 @@ class AnalyzeAtLoad(Record):
     @property
     def efficiency(self) -> float | None:
         """Output over input power."""
+    @property
+    def band(self) -> AnalyzeLawBand | None:
+        """Between which values other laws put it, where that is asked for."""
     @property
     def loss_w(self) -> float | None:
         """All losses, W."""
@@ -1010,6 +1062,9 @@ class AnalyzeOperationReport(Record):
     def heat(self) -> AnalyzeHeatReport | None:
         """Temperatures and heat, where the train says what carries heat away."""
     @property
+    def band(self) -> AnalyzeLawBand | None:
+        """Between which values other laws put the efficiency, where [``Analysis::with_bands``] asked."""
+    @property
     def solutions(self) -> list[AnalyzeSolutionReport]:
         """Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium)."""
     @property
@@ -1125,6 +1180,55 @@ class TableShaftElement(Record):
         """Torque that it exerts on the first member, over the input torque; 0 while it is open, absent where it is not
         determined."""
 
+class TableBandEnd(Record):
+    """An end of a band, which ``--law`` reproduces."""
+    @property
+    def efficiency(self) -> float:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def laws(self) -> Named[str]:
+        """The law of each family in the band."""
+
+class TableFamilyBand(Record):
+    """The laws of one family."""
+    @property
+    def law(self) -> str:
+        """The law in force."""
+    @property
+    def in_range(self) -> bool:
+        """Whether that is inside its range here."""
+    @property
+    def efficiencies(self) -> Named[float]:
+        """The efficiency with each law that counts."""
+    @property
+    def beyond_ranges(self) -> bool:
+        """Whether these are counted although fewer than two laws are inside their ranges."""
+    @property
+    def left_out(self) -> list[str]:
+        """Laws that do not count: outside their ranges, or without one answer."""
+
+class TableLawBand(Record):
+    """What an efficiency would be with other laws of loss: how far it is known.
+
+    Every law of each kind of loss is put in the place of the law in force, then the costliest and the cheapest law
+    of all kinds together. Laws outside their ranges count only where fewer than two are inside. Laws that reproduce
+    a published error, and those that leave a loss out, do not count. The oil temperature is held, and so are film,
+    loss factor and load sharing, which belong to the law of friction."""
+    @property
+    def low(self) -> TableBandEnd:
+        """The lowest efficiency."""
+    @property
+    def high(self) -> TableBandEnd:
+        """The highest efficiency."""
+    @property
+    def families(self) -> Named[TableFamilyBand]:
+        """By family, what its laws give while the other families keep theirs."""
+
 class TableLosses(Record):
     """Losses by kind, W."""
     @property
@@ -1204,6 +1308,9 @@ class TableAtLoad(Record):
     @property
     def efficiency(self) -> float | None:
         """Output over input power."""
+    @property
+    def band(self) -> TableLawBand | None:
+        """Between which values other laws put it, where that is asked for."""
     @property
     def loss_w(self) -> float | None:
         """All losses, W."""
@@ -1339,6 +1446,9 @@ class TableAnswer(Answer):
     def states(self) -> Named[TableShaftState]:
         """Every state; the train as drawn where it has none."""
     @property
+    def assumptions(self) -> list[str]:
+        """What the model leaves out, and what stands in for data that were not given."""
+    @property
     def diagnostics(self) -> list[TableDiagnostic]:
         """What to know beside it."""
 
@@ -1446,6 +1556,88 @@ class CheckAnswer(Answer):
     @property
     def diagnostics(self) -> list[CheckDiagnostic]:
         """Warnings and notes, each with its place in the file."""
+
+class FlowBandEnd(Record):
+    """An end of a band, which ``--law`` reproduces."""
+    @property
+    def efficiency(self) -> float:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def laws(self) -> Named[str]:
+        """The law of each family in the band."""
+
+class FlowFamilyBand(Record):
+    """The laws of one family."""
+    @property
+    def law(self) -> str:
+        """The law in force."""
+    @property
+    def in_range(self) -> bool:
+        """Whether that is inside its range here."""
+    @property
+    def efficiencies(self) -> Named[float]:
+        """The efficiency with each law that counts."""
+    @property
+    def beyond_ranges(self) -> bool:
+        """Whether these are counted although fewer than two laws are inside their ranges."""
+    @property
+    def left_out(self) -> list[str]:
+        """Laws that do not count: outside their ranges, or without one answer."""
+
+class FlowLawBand(Record):
+    """What an efficiency would be with other laws of loss: how far it is known.
+
+    Every law of each kind of loss is put in the place of the law in force, then the costliest and the cheapest law
+    of all kinds together. Laws outside their ranges count only where fewer than two are inside. Laws that reproduce
+    a published error, and those that leave a loss out, do not count. The oil temperature is held, and so are film,
+    loss factor and load sharing, which belong to the law of friction."""
+    @property
+    def low(self) -> FlowBandEnd:
+        """The lowest efficiency."""
+    @property
+    def high(self) -> FlowBandEnd:
+        """The highest efficiency."""
+    @property
+    def families(self) -> Named[FlowFamilyBand]:
+        """By family, what its laws give while the other families keep theirs."""
+
+class FlowOutsideAt(Record):
+    """A place where a law was used outside its range."""
+    @property
+    def name(self) -> str:
+        """The mesh, bearing, seal, gear or rotor."""
+    @property
+    def value(self) -> float | None:
+        """The value there, in the unit of the quantity; absent where it is not finite."""
+
+class FlowOutsideLaw(Record):
+    """A quantity outside the range of a law, wherever it was."""
+    @property
+    def family(self) -> str:
+        """Family of the law."""
+    @property
+    def law(self) -> str:
+        """Name of the law."""
+    @property
+    def symbol(self) -> str:
+        """Symbol of the quantity."""
+    @property
+    def unit(self) -> str:
+        """Its SI unit; ``-`` for a pure number."""
+    @property
+    def low(self) -> float | None:
+        """Lowest value of the range, in that unit; absent where there is none."""
+    @property
+    def high(self) -> float | None:
+        """Highest value of the range, in that unit; absent where there is none."""
+    @property
+    def places(self) -> list[FlowOutsideAt]:
+        """Where the law was used so."""
 
 class FlowNode(Record):
     """A component, a contact, or an end of the graph."""
@@ -1639,6 +1831,12 @@ class FlowOperationFlow(Record):
     def reason(self) -> str | None:
         """One sentence that explains the verdict."""
     @property
+    def band(self) -> FlowLawBand | None:
+        """Between which values other laws put the efficiency, where [``FlowReport::with_bands``] asked."""
+    @property
+    def outside_laws(self) -> list[FlowOutsideLaw]:
+        """Laws that were used outside their ranges."""
+    @property
     def solutions(self) -> list[FlowHypergraph]:
         """Every equilibrium."""
     @property
@@ -1713,6 +1911,55 @@ class FlowAnswer(Answer):
     @property
     def diagnostics(self) -> list[FlowDiagnostic]:
         """Warnings and notes."""
+
+class LossesBandEnd(Record):
+    """An end of a band, which ``--law`` reproduces."""
+    @property
+    def efficiency(self) -> float:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def laws(self) -> Named[str]:
+        """The law of each family in the band."""
+
+class LossesFamilyBand(Record):
+    """The laws of one family."""
+    @property
+    def law(self) -> str:
+        """The law in force."""
+    @property
+    def in_range(self) -> bool:
+        """Whether that is inside its range here."""
+    @property
+    def efficiencies(self) -> Named[float]:
+        """The efficiency with each law that counts."""
+    @property
+    def beyond_ranges(self) -> bool:
+        """Whether these are counted although fewer than two laws are inside their ranges."""
+    @property
+    def left_out(self) -> list[str]:
+        """Laws that do not count: outside their ranges, or without one answer."""
+
+class LossesLawBand(Record):
+    """What an efficiency would be with other laws of loss: how far it is known.
+
+    Every law of each kind of loss is put in the place of the law in force, then the costliest and the cheapest law
+    of all kinds together. Laws outside their ranges count only where fewer than two are inside. Laws that reproduce
+    a published error, and those that leave a loss out, do not count. The oil temperature is held, and so are film,
+    loss factor and load sharing, which belong to the law of friction."""
+    @property
+    def low(self) -> LossesBandEnd:
+        """The lowest efficiency."""
+    @property
+    def high(self) -> LossesBandEnd:
+        """The highest efficiency."""
+    @property
+    def families(self) -> Named[LossesFamilyBand]:
+        """By family, what its laws give while the other families keep theirs."""
 
 class LossesLosses(Record):
     """Losses by kind, W."""
@@ -1854,6 +2101,9 @@ class LossesLossPoint(Record):
     def efficiency(self) -> float | None:
         """Output over input power."""
     @property
+    def band(self) -> LossesLawBand | None:
+        """Between which values other laws put it, where [``LossRequest::bands``] asks."""
+    @property
     def input_power_w(self) -> float:
         """Power in, W."""
     @property
@@ -1921,6 +2171,9 @@ class LossesAnswer(Answer):
     @property
     def spreads(self) -> list[LossesSpread]:
         """Where laws are compared: the spread over each group of points that differ in the law alone."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What the model leaves out, and what stands in for data that were not given."""
 
 class HeatLossSource(Record):
     """One place where power is lost."""
@@ -2418,6 +2671,9 @@ class SensitivityQuantitySensitivity(Record):
     def assumed(self) -> bool:
         """Whether it is not given but taken."""
     @property
+    def together(self) -> list[str]:
+        """Quantities of the same teeth that move with it in proportion, because alone it would contradict them."""
+    @property
     def step(self) -> Literal["percent", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
         """The step for which changes are told."""
     @property
@@ -2623,6 +2879,9 @@ class SensitivityAnswer(Answer):
     @property
     def operations(self) -> list[SensitivityOperationSensitivity]:
         """Every operation asked for."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What the model leaves out, and what stands in for data that were not given."""
     @property
     def diagnostics(self) -> list[SensitivityDiagnostic]:
         """Warnings and notes of the operations."""
@@ -2850,6 +3109,9 @@ class CalibrateAnswer(Answer):
     @property
     def train_file(self) -> str:
         """The train file with the factors."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What the model leaves out, and what stands in for data that were not given."""
 
 class SweepAnswer(_answer.Sweep):
     """A sweep: what its points say together, and the points themselves."""
@@ -2868,6 +3130,9 @@ class CompareVariant(Record):
     @property
     def train(self) -> str:
         """Name of its train."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What the model leaves out, and what stands in for data that were not given."""
 
 class CompareTextDifference(Record):
     """A key in which files differ, or a prescription in which operations do."""
@@ -4953,6 +5218,88 @@ class DrawSankey(Record):
     def panels(self) -> list[DrawSankeyPanel]:
         """One for each equilibrium, and one for each operation without any."""
 
+class DrawBandEnd(Record):
+    """An end of a band, which ``--law`` reproduces."""
+    @property
+    def efficiency(self) -> float:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def laws(self) -> Named[str]:
+        """The law of each family in the band."""
+
+class DrawFamilyBand(Record):
+    """The laws of one family."""
+    @property
+    def law(self) -> str:
+        """The law in force."""
+    @property
+    def in_range(self) -> bool:
+        """Whether that is inside its range here."""
+    @property
+    def efficiencies(self) -> Named[float]:
+        """The efficiency with each law that counts."""
+    @property
+    def beyond_ranges(self) -> bool:
+        """Whether these are counted although fewer than two laws are inside their ranges."""
+    @property
+    def left_out(self) -> list[str]:
+        """Laws that do not count: outside their ranges, or without one answer."""
+
+class DrawLawBand(Record):
+    """What an efficiency would be with other laws of loss: how far it is known.
+
+    Every law of each kind of loss is put in the place of the law in force, then the costliest and the cheapest law
+    of all kinds together. Laws outside their ranges count only where fewer than two are inside. Laws that reproduce
+    a published error, and those that leave a loss out, do not count. The oil temperature is held, and so are film,
+    loss factor and load sharing, which belong to the law of friction."""
+    @property
+    def low(self) -> DrawBandEnd:
+        """The lowest efficiency."""
+    @property
+    def high(self) -> DrawBandEnd:
+        """The highest efficiency."""
+    @property
+    def families(self) -> Named[DrawFamilyBand]:
+        """By family, what its laws give while the other families keep theirs."""
+
+class DrawOutsideAt(Record):
+    """A place where a law was used outside its range."""
+    @property
+    def name(self) -> str:
+        """The mesh, bearing, seal, gear or rotor."""
+    @property
+    def value(self) -> float | None:
+        """The value there, in the unit of the quantity; absent where it is not finite."""
+
+class DrawOutsideLaw(Record):
+    """A quantity outside the range of a law, wherever it was."""
+    @property
+    def family(self) -> str:
+        """Family of the law."""
+    @property
+    def law(self) -> str:
+        """Name of the law."""
+    @property
+    def symbol(self) -> str:
+        """Symbol of the quantity."""
+    @property
+    def unit(self) -> str:
+        """Its SI unit; ``-`` for a pure number."""
+    @property
+    def low(self) -> float | None:
+        """Lowest value of the range, in that unit; absent where there is none."""
+    @property
+    def high(self) -> float | None:
+        """Highest value of the range, in that unit; absent where there is none."""
+    @property
+    def places(self) -> list[DrawOutsideAt]:
+        """Where the law was used so."""
+
 class DrawNode(Record):
     """A component, a contact, or an end of the graph."""
     @property
@@ -5144,6 +5491,12 @@ class DrawOperationFlow(Record):
     @property
     def reason(self) -> str | None:
         """One sentence that explains the verdict."""
+    @property
+    def band(self) -> DrawLawBand | None:
+        """Between which values other laws put the efficiency, where [``FlowReport::with_bands``] asked."""
+    @property
+    def outside_laws(self) -> list[DrawOutsideLaw]:
+        """Laws that were used outside their ranges."""
     @property
     def solutions(self) -> list[DrawHypergraph]:
         """Every equilibrium."""
@@ -6561,6 +6914,9 @@ class DrawAtLoad(Record):
     def efficiency(self) -> float | None:
         """Output over input power."""
     @property
+    def band(self) -> DrawLawBand | None:
+        """Between which values other laws put it, where that is asked for."""
+    @property
     def loss_w(self) -> float | None:
         """All losses, W."""
     @property
@@ -6646,6 +7002,9 @@ class DrawShaftTable(Record):
     @property
     def states(self) -> Named[DrawShaftState]:
         """Every state; the train as drawn where it has none."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What the model leaves out, and what stands in for data that were not given."""
     @property
     def diagnostics(self) -> list[DrawDiagnostic]:
         """What to know beside it."""
@@ -6848,6 +7207,9 @@ class ExportAnswer(Answer):
     @property
     def not_carried(self) -> list[ExportNotCarried]:
         """What the train file says and the files do not."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What the model leaves out, and what stands in for data that were not given."""
     @property
     def kinds(self) -> list[ExportOneKind]:
         """The kinds there are, where no kind was named."""

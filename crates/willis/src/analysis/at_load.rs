@@ -8,6 +8,7 @@ use crate::kinematics::{Configuration, Ratio};
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::{AngularSpeed, Dimension, Quantity, Torque};
 
+use super::band::LawBand;
 use super::losses::{self, beyond_oils, quantity};
 use super::{
     HeatBasis, LossSource, Losses, OperationReport, SolutionReport, Verdict, at_its_temperature, operate_unnamed,
@@ -305,6 +306,9 @@ pub struct AtLoad {
     pub verdict: Verdict,
     /// Output over input power.
     pub efficiency: Option<f64>,
+    /// Between which values other laws put it, where that is asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band: Option<Box<LawBand>>,
     /// All losses, W.
     pub loss_w: Option<f64>,
     /// Losses by kind, W.
@@ -369,6 +373,7 @@ impl AtLoad {
             beyond_limit: false,
             verdict: Verdict::Undetermined,
             efficiency: None,
+            band: None,
             loss_w: None,
             losses_w: None,
             spin_loss_w: None,
@@ -407,6 +412,20 @@ impl AtLoad {
 }
 
 impl AtLoad {
+    /// Between which values other laws put the efficiency of a state at this load and temperature.
+    pub(super) fn law_band(&self, train: &Train, state: Option<usize>) -> Option<LawBand> {
+        self.efficiency?;
+        let quantity =
+            |value: f64, dimension| Some(Quantity { value: Rational::from_f64(value)?, pi_power: 0, dimension });
+        let load = DrivingLoad {
+            speed: quantity(self.speed_rad_s, Dimension::ANGULAR_SPEED)?,
+            load: Load::Torque(quantity(self.torque_n_m, Dimension::TORQUE)?),
+            temperature: self.temperature_k,
+            operation: None,
+        };
+        LawBand::of(train, &load.point(train, state, "at load")?)
+    }
+
     /// For people: speed and torque at the input, `1500 rpm and 60 N m at the input`, by a writer of numbers; with the operation
     /// that has them, by a writer of names.
     pub fn point(&self, number: impl Fn(f64) -> String, name: impl Fn(&str) -> String) -> String {

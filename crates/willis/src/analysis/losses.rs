@@ -10,7 +10,8 @@ use crate::losses::{self, Entry, Tag};
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::Quantity;
 
-use super::{Convergence, LossSource, Losses, Named, OutsideLaw, Verdict, Why, operate_unnamed, words};
+use super::band::LawBand;
+use super::{Convergence, LossSource, Losses, Named, OutsideLaw, Verdict, Why, assumptions, operate_unnamed, words};
 
 /// Where to evaluate the losses of a train. An empty list leaves a quantity as the file has it.
 #[derive(Clone, Debug, Default)]
@@ -27,6 +28,8 @@ pub struct LossRequest {
     pub temperatures: Vec<f64>,
     /// A family of laws: every point is evaluated with every law of it.
     pub compare: Option<String>,
+    /// Also what other laws of loss make of each efficiency: some twenty points in floating point each.
+    pub bands: bool,
 }
 
 impl LossRequest {
@@ -68,6 +71,9 @@ pub struct LossPoint {
     pub why: Option<Why>,
     /// Output over input power.
     pub efficiency: Option<f64>,
+    /// Between which values other laws put it, where [`LossRequest::bands`] asks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band: Option<Box<LawBand>>,
     /// Power in, W.
     pub input_power_w: f64,
     /// All losses, W.
@@ -119,6 +125,9 @@ pub struct LossTable {
     pub points: Vec<LossPoint>,
     /// Where laws are compared: the spread over each group of points that differ in the law alone.
     pub spreads: Vec<Spread>,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default)]
+    pub assumptions: Vec<String>,
 }
 
 impl Contract for LossTable {
@@ -211,13 +220,20 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
         family: request.compare.clone(),
         points: vec![],
         spreads: vec![],
+        assumptions: assumptions(train),
     };
     for operation in chosen {
         for varied in variants(operation, request, &mut wrong) {
             let from = table.points.len();
             for (law, train) in &laws {
                 match point(train, &varied, law.as_ref().map(|l| l.id)) {
-                    Ok(p) => table.points.push(p),
+                    Ok(mut p) => {
+                        if request.bands {
+                            let at = Operation { temperature: p.temperature_k, ..varied.clone() };
+                            p.band = LawBand::of(train, &at).map(Box::new);
+                        }
+                        table.points.push(p);
+                    }
                     Err(d) => wrong.extend(d),
                 }
             }
@@ -329,6 +345,7 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
         verdict: report.verdict,
         reason: report.reason.clone(),
         efficiency: solution.and_then(|s| s.efficiency),
+        band: None,
         input_power_w: solution.map_or(0.0, |s| s.input_power_w),
         loss_w: solution.map_or(0.0, |s| s.loss_w),
         losses_w: solution.map_or(Losses::default(), |s| s.losses_w),

@@ -108,6 +108,13 @@ impl Origin {
         let agreed = rounds.agree_closely(physics, &point.motion, near)?;
         self.pattern.is_only(&rounds, &agreed).then_some(agreed)
     }
+
+    /// The same as an analysis with these physics finds it, to the last bit where the same ends drive.
+    pub fn again(&self, point: &Point<'_>, operation: &Operation, physics: &Physics<'_>) -> Option<Agreed> {
+        let rounds = self.pattern.rounds(&point.c, &point.motion, operation, &self.problem)?;
+        let agreed = rounds.agree(physics, &point.motion)?;
+        self.pattern.is_only(&rounds, &agreed).then_some(agreed)
+    }
 }
 
 /// An operating point, answered.

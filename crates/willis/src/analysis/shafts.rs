@@ -10,6 +10,7 @@ use crate::named::Named;
 use crate::power_flow::{External, Flow, ties};
 use crate::train::{AS_DRAWN, Efficiency, FRAME, MemberId, MemberKind, ShiftElementId, ShiftElementKind, Train};
 
+use super::assumptions;
 use super::at_load::{AskedLoad, AtLoad, Loads};
 use super::table::Drive;
 use super::why::Why;
@@ -29,8 +30,56 @@ pub struct ShaftTable {
     pub lossless: bool,
     /// Every state; the train as drawn where it has none.
     pub states: Named<ShaftState>,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default)]
+    pub assumptions: Vec<String>,
     /// What to know beside it.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+impl ShaftTable {
+    /// The same with what other laws of loss make of the efficiencies at a load: [`AtLoad::band`].
+    ///
+    /// # Example
+    /// ```
+    /// use willis::analysis::{AskedLoad, ShaftTableRequest, shaft_table};
+    /// use willis::train::Train;
+    ///
+    /// let train = Train::from_toml(r#"
+    ///     format = 1
+    ///     name = "one set"
+    ///     members = ["s", "c"]
+    ///     terminals = ["s", "c"]
+    ///     [oil]
+    ///     name = "ISO VG 220"
+    ///     temperature = "70 degC"
+    ///     [[set]]
+    ///     name = "P1"
+    ///     sun = { member = "s", teeth = 30 }
+    ///     planet = { teeth = 20, count = 4 }
+    ///     ring = { member = "frame", teeth = 70 }
+    ///     carrier = "c"
+    ///     geometry = { module = "2 mm", width = "25 mm", roughness = "0.4 um" }
+    ///     [[operation]]
+    ///     name = "full load"
+    ///     speeds = { s = "1000 rpm" }
+    ///     torques = { s = "200 N m" }
+    /// "#)?;
+    /// let request = ShaftTableRequest { load: Some(AskedLoad::default()), ..ShaftTableRequest::default() };
+    /// let table = shaft_table(&train, &request)?.with_bands(&train);
+    /// let gear = table.states.0[0].1.at_load.as_ref().unwrap();
+    /// let band = gear.band.as_ref().unwrap();
+    /// assert!(band.low.efficiency < gear.efficiency.unwrap());
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn with_bands(mut self, train: &Train) -> Self {
+        for (name, row) in &mut self.states.0 {
+            if let Some(at) = &mut row.at_load {
+                at.band = at.law_band(train, train.states.iter().position(|s| s.name == *name)).map(Box::new);
+            }
+        }
+        self
+    }
 }
 
 impl Contract for ShaftTable {
@@ -181,6 +230,7 @@ pub fn shaft_table(train: &Train, request: &ShaftTableRequest) -> Result<ShaftTa
         source: train.source.clone(),
         lossless,
         states: Named(states),
+        assumptions: assumptions(train),
         diagnostics: diagnostics.into_iter().collect(),
     })
 }

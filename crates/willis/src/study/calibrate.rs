@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::assumptions;
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
@@ -124,6 +125,9 @@ pub struct Calibration {
     pub train_file: String,
     /// What must be known to read the numbers.
     pub notes: Vec<String>,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default)]
+    pub assumptions: Vec<String>,
 }
 
 impl Contract for Calibration {
@@ -401,6 +405,7 @@ pub fn calibrate(model: &Model, request: &CalibrateRequest, work: &dyn Work) -> 
     let next = next(&question, &profile, &tests, &found, &free, &predictions);
     let file = with_factors(model, request, &parts, &tests, &range)?;
     Ok(Calibration {
+        assumptions: assumptions(train),
         format: Format::new(),
         train: train.name().to_owned(),
         tests: tests.len() as u64,

@@ -6,6 +6,7 @@ mod results;
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis::assumptions;
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Model;
@@ -43,6 +44,9 @@ pub struct Variant {
     pub file: String,
     /// Name of its train.
     pub train: String,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default)]
+    pub assumptions: Vec<String>,
 }
 
 /// A value of a variant.
@@ -249,6 +253,7 @@ pub fn compare(
                 label: label.clone(),
                 file: (*file).to_owned(),
                 train: model.train().name().to_owned(),
+                assumptions: assumptions(model.train()),
             })
             .collect(),
         identical: files.is_empty(),

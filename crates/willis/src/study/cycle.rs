@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Losses, SolutionReport};
+use crate::analysis::{self, Losses, SolutionReport};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
@@ -374,6 +374,9 @@ pub struct CycleReport {
     /// The oil temperature, where it follows from the losses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub oil: Option<CycleOil>,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default)]
+    pub assumptions: Vec<String>,
 }
 
 impl Contract for CycleReport {
@@ -786,6 +789,7 @@ impl<'a> Cycle<'a> {
         let is_own = train.operations().iter().any(|o| o.name == base.name);
         CycleReport {
             format: Format::new(),
+            assumptions: analysis::assumptions(train),
             train: train.name().to_owned(),
             operation: is_own.then(|| base.name.clone()),
             held: self.base(),

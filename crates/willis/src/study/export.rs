@@ -22,6 +22,7 @@ mod vecto;
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Model;
 use crate::train::Train;
@@ -122,11 +123,14 @@ pub struct Export {
     /// What the train file says and the files do not.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_carried: Vec<NotCarried>,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assumptions: Vec<String>,
 }
 
 impl Export {
     fn new(files: Vec<ExportedFile>, notes: Vec<String>) -> Self {
-        Self { files, notes, not_carried: vec![] }
+        Self { files, notes, not_carried: vec![], assumptions: vec![] }
     }
 }
 
@@ -257,6 +261,7 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
         }
     }
     done.notes = told;
+    done.assumptions = analysis::assumptions(model.train());
     Ok(done)
 }
 

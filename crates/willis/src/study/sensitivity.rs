@@ -21,7 +21,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::losses::mesh_friction::MeshFriction;
 use crate::operating_point::LossKind;
-use crate::train::{FRAME, Load, Operation, Slot, Train};
+use crate::train::{FRAME, Input, Load, MemberKind, Operation, Slot, Train};
 
 use balance::{Moved, Powers, powers};
 use heat::Following;
@@ -42,6 +42,9 @@ pub struct Sensitivity {
     pub train: String,
     /// Every operation asked for.
     pub operations: Vec<OperationSensitivity>,
+    /// What the model leaves out, and what stands in for data that were not given.
+    #[serde(default)]
+    pub assumptions: Vec<String>,
     /// Warnings and notes of the operations.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -118,7 +121,7 @@ pub enum StepKind {
     Hundredth,
     /// One revolution per minute: speeds that are zero.
     Rpm,
-    /// A tenth of a millimetre: lengths that are zero.
+    /// A tenth of a millimetre: lengths that are zero, and centre distances and tip diameters, which other data fix.
     TenthMillimetre,
     /// One SI unit: torques, powers, forces that are zero.
     Unit,
@@ -166,6 +169,9 @@ pub struct QuantitySensitivity {
     pub unit: String,
     /// Whether it is not given but taken.
     pub assumed: bool,
+    /// Quantities of the same teeth that move with it in proportion, because alone it would contradict them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub together: Vec<String>,
     /// The step for which changes are told.
     pub step: StepKind,
     /// That step, SI.
@@ -212,19 +218,25 @@ struct Quantity {
     value: f64,
     unit: &'static str,
     assumed: bool,
-    slots: Vec<Slot>,
+    /// What moves with it, and at which rate.
+    slots: Vec<(Slot, f64)>,
+    /// Other quantities of the file that these are, in proportion.
+    together: Vec<String>,
     moved: Moved,
 }
 
 impl Quantity {
     fn step(&self) -> (StepKind, f64) {
-        let shift = self.slots.iter().any(|s| matches!(s, Slot::Shift(..)));
+        let shift = self.slots.iter().any(|(s, _)| matches!(s, Slot::Shift(..)));
+        // Lengths that others of the same teeth fix: a percent of them is no gear any more.
+        let fits = |(s, _): &(Slot, f64)| matches!(s, Slot::CentreDistance(_) | Slot::TipDiameter(..));
+        let fitted = self.together.is_empty() && self.slots.iter().any(fits);
         match self.unit {
             "K" => (StepKind::Kelvin, 1.0),
             "rad" => (StepKind::Degree, 1f64.to_radians()),
             _ if shift => (StepKind::Hundredth, 0.01),
             "rad/s" if self.value == 0.0 => (StepKind::Rpm, std::f64::consts::PI / 30.0),
-            "m" if self.value == 0.0 => (StepKind::TenthMillimetre, 1e-4),
+            "m" if self.value == 0.0 || fitted => (StepKind::TenthMillimetre, 1e-4),
             "-" if self.value == 0.0 => (StepKind::Hundredth, 0.01),
             _ if self.value == 0.0 => (StepKind::Unit, 1.0),
             _ => (StepKind::Percent, 0.01 * self.value),
@@ -301,6 +313,7 @@ pub fn sensitivity(train: &Train, selection: &Selection) -> Result<Sensitivity, 
         format: Format::new(),
         train: train.name.clone(),
         operations,
+        assumptions: analysis::assumptions(train),
         diagnostics: notes.into_iter().collect(),
     })
 }
@@ -319,7 +332,7 @@ pub(super) fn loss_by(
     let following = report.heat.as_ref().and_then(|h| Following::new(train, operation, point, h));
     let mut slopes = Vec::with_capacity(quantities.len());
     for slot in quantities {
-        let slots = [*slot];
+        let slots = [(*slot, 1.0)];
         let numbers = seeded::numbers(train, operation.temperature, &slots);
         let Some(mut found) = numbers.and_then(|n| powers(train, operation, point, n, Moved::Train)) else {
             return Ok(None);
@@ -386,7 +399,7 @@ fn of_operation(
     let mut checks = Checks { balance_residual: 0.0, rounds: 0, error: 0.0 };
     for quantity in quantities(train, operation) {
         // A temperature that follows is moved by the others.
-        if follows && quantity.slots.contains(&Slot::Temperature) {
+        if follows && quantity.slots.iter().any(|(s, _)| *s == Slot::Temperature) {
             continue;
         }
         if let Some(mesh) = starts_to_move(train, operation, point, quantity.moved) {
@@ -473,6 +486,7 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
         value: quantity.value,
         unit: quantity.unit.to_owned(),
         assumed: quantity.assumed,
+        together: quantity.together,
         step,
         step_size,
         efficiency_derivative: efficiency,
@@ -484,6 +498,43 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
         loss_elasticity: (step == StepKind::Percent && loss.re > 0.0).then(|| loss.eps * quantity.value / loss.re),
         sources,
     })
+}
+
+/// What must move with a module so that teeth stay similar and fit: their lengths that are given, and the modules, with
+/// their lengths, of other teeth on the same planets.
+fn together<'t>(train: &'t Train, input: &Input) -> Vec<&'t Input> {
+    let modules = |i: &Input| -> Vec<usize> {
+        let own = |s: &Slot| match s {
+            Slot::Module(j) => Some(*j),
+            _ => None,
+        };
+        i.slots.iter().filter_map(own).collect()
+    };
+    let mut meshes = modules(input);
+    if meshes.is_empty() {
+        return vec![];
+    }
+    let planets = |j: usize| {
+        let own = train.meshes[j].gears.iter().map(|g| g.member);
+        own.filter(|m| train.members[m.index()].kind == MemberKind::Planet).collect::<Vec<_>>()
+    };
+    // Meshes of one input at a time, until no other shares a planet with them.
+    loop {
+        let near = |i: &&Input| {
+            let own = modules(i);
+            let shares = |j: &usize| meshes.iter().any(|k| planets(*k).iter().any(|p| planets(*j).contains(p)));
+            own.iter().any(|j| !meshes.contains(j)) && own.iter().any(shares)
+        };
+        let Some(more) = train.inputs.iter().find(near) else { break };
+        meshes.extend(modules(more));
+    }
+    let moves = |s: &Slot| match s {
+        Slot::Module(j) | Slot::CentreDistance(j) | Slot::TipDiameter(j, _) | Slot::TipAlteration(j, _) => {
+            meshes.contains(j)
+        }
+        _ => false,
+    };
+    train.inputs.iter().filter(|i| i.path != input.path && i.slots.iter().any(moves)).collect()
 }
 
 /// Every continuous quantity of train and operation.
@@ -501,8 +552,11 @@ fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
             Some(own) => ("oil.temperature".to_owned(), own, false),
             None => (input.path.clone(), input.value, input.assumed),
         };
-        let (unit, slots) = (input.unit, input.slots.clone());
-        all.push(Quantity { name, value, unit, assumed, slots, moved: Moved::Train });
+        let with = together(train, input);
+        let along = with.iter().flat_map(|o| o.slots.iter().map(|s| (*s, o.value / input.value)));
+        let slots = input.slots.iter().map(|s| (*s, 1.0)).chain(along).collect();
+        let together = with.iter().map(|o| o.path.clone()).collect();
+        all.push(Quantity { name, value, unit: input.unit, assumed, slots, together, moved: Moved::Train });
     }
     let moving = |name: String, value: f64, unit: &'static str, moved: Moved| Quantity {
         name,
@@ -510,6 +564,7 @@ fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
         unit,
         assumed: false,
         slots: vec![],
+        together: vec![],
         moved,
     };
     for (k, (member, speed)) in operation.speeds.iter().enumerate() {

@@ -708,7 +708,7 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
     };
     match target {
         Target::File(key) => model.document().value(key),
-        Target::Law(family) => assumed::in_force(train, family).map(str::to_owned),
+        Target::Law(family) => train.law_in_force(family).map(str::to_owned),
         Target::State => base.state.map(|k| train.states()[k].name.clone()),
         Target::Temperature => {
             let t = base.temperature.or(train.lubrication.as_ref().map(|l| l.temperature))?;

@@ -4,6 +4,7 @@
 mod common;
 
 mod at_load;
+mod band;
 mod compiled;
 mod degenerate;
 mod echo;

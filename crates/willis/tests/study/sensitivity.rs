@@ -35,6 +35,19 @@ fn edited(text: &str, operation: &str, name: &str, value: f64, unit: &str) -> St
     document.text()
 }
 
+/// The same, and what moves with the quantity in proportion.
+fn moved(text: &str, operation: &str, q: &QuantitySensitivity, value: f64) -> String {
+    let mut text = edited(text, operation, &q.name, value, &q.unit);
+    for other in &q.together {
+        let document = Document::parse(&text).expect("TOML");
+        let key = document.find(other).unwrap_or_else(|d| panic!("{other}: {}", d.message));
+        let own = document.value(&key).expect("what moves along is given");
+        let own = willis::units::Length::parse(&own).expect("a length").si();
+        text = edited(&text, operation, other, own * value / q.value, "m");
+    }
+    text
+}
+
 /// Efficiency and total loss, and each loss, of an operation.
 fn analysed(text: &str, operation: &str) -> (f64, f64, Vec<(String, f64)>) {
     let train = Train::from_toml(text).unwrap_or_else(|wrong| panic!("{wrong}\n{text}"));
@@ -60,7 +73,7 @@ fn differences(text: &str, operation: &str, q: &QuantitySensitivity) -> (f64, f6
     if q.name.contains("efficiency") {
         h = h.min(0.4 * (1.0 - q.value));
     }
-    let at = |x: f64| analysed(&edited(text, operation, &q.name, x, &q.unit), operation);
+    let at = |x: f64| analysed(&moved(text, operation, q, x), operation);
     let slope = |h: f64| {
         let (above, below) = (at(q.value + h), at(q.value - h));
         let of = |name: &str, list: &[(String, f64)]| list.iter().find(|s| s.0 == name).map_or(0.0, |s| s.1);
@@ -132,6 +145,42 @@ fn val_fva_planetary_stage_by_differences() {
 #[test]
 fn val_wang_herringbone_by_differences() {
     agrees("wang-herringbone-physical", 20);
+}
+
+#[test]
+fn val_nrel_stage_by_differences() {
+    agrees("nrel-5mw-stage-1", 15);
+}
+
+/// Every step that is told can be taken: with what moves along, the file is still that of a train. Not of efficiencies, whose
+/// step may lead past one, and of profile shifts without a centre distance, which other gears of the set must share.
+#[test]
+fn every_step_can_be_taken() {
+    let (mut steps, mut along) = (0, 0);
+    for (name, text) in crate::common::examples() {
+        let Ok(train) = Train::from_toml(&text) else { continue };
+        let Ok(all) = sensitivity(&train, &Selection::default()) else { continue };
+        for o in all.operations.iter().take(1) {
+            let fits = |q: &&QuantitySensitivity| {
+                let alone = q.name.ends_with(".shift") && !text.contains("centre_distance");
+                !(alone || q.assumed || q.name.contains("efficiency") || q.name.contains("eta"))
+            };
+            for q in o.quantities.iter().filter(fits) {
+                let whole = ["teeth", "count", "planets", "number"].iter().any(|w| q.name.ends_with(w));
+                assert!(!whole, "{name}: {} is a whole number", q.name);
+                // What is zero may have no other side.
+                let back = if q.value == 0.0 { q.step_size } else { -q.step_size };
+                for step in [q.step_size, back] {
+                    let text = moved(&text, &o.name, q, q.value + step);
+                    let read = Train::from_toml(&text);
+                    assert!(read.is_ok(), "{name}: {} by {step}: {}", q.name, read.unwrap_err());
+                    steps += 1;
+                }
+                along += q.together.len();
+            }
+        }
+    }
+    assert!(steps > 100 && along > 2, "{steps} steps, {along} along");
 }
 
 #[test]

@@ -9,7 +9,9 @@ use willis::statics::Certificate;
 use willis::train::Train;
 
 use crate::questions::{heat, losses};
-use crate::style::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{
+    self, assumptions, bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap,
+};
 
 pub fn analysis(train: &Train, a: &Analysis) -> String {
     let mut out = String::new();
@@ -43,12 +45,7 @@ pub fn analysis(train: &Train, a: &Analysis) -> String {
         out += &operation(o);
     }
     out.push('\n');
-    out += &bold("Assumptions in force");
-    out.push('\n');
-    for line in &a.assumptions {
-        out += &wrap(line, "  · ");
-        out.push('\n');
-    }
+    out += &assumptions(&a.assumptions);
     out.push('\n');
     out
 }
@@ -145,7 +142,7 @@ pub fn load(a: &AtLoad) -> String {
 /// Efficiency at load, or why there is none, in a word; marked where there is a warning.
 pub fn at_load_cell(a: &AtLoad) -> String {
     let mark = if a.warnings.is_empty() { "" } else { " *" };
-    a.efficiency.map_or(a.verdict.words().to_owned(), percent) + mark
+    a.efficiency.map_or(a.verdict.words().to_owned(), |e| style::efficiency_cell(e, a.band.as_deref())) + mark
 }
 
 /// The warnings that the mark stands for.
@@ -255,17 +252,17 @@ fn operation(o: &OperationReport) -> String {
             out += &bold(&format!("  Solution {} of {}", k + 1, o.solutions.len()));
             out.push('\n');
         }
-        out += &solution(s);
+        out += &solution(s, o);
     }
     for s in &o.dissipative_solutions {
         out += &bold("  Only when every loaded member pushes");
         out.push('\n');
-        out += &solution(s);
+        out += &solution(s, o);
     }
     out
 }
 
-fn solution(s: &SolutionReport) -> String {
+fn solution(s: &SolutionReport, o: &OperationReport) -> String {
     let mut out = String::new();
     let (unit, scale) = power_unit(s);
     let power = |p: f64| significant(p / scale, 5);
@@ -277,10 +274,13 @@ fn solution(s: &SolutionReport) -> String {
     let exact = if (1..24).contains(&exact.len()) { format!(" = {exact}") } else { String::new() };
     let efficiency = match (s.all_dissipated, s.efficiency) {
         (true, _) => "none: every loaded member is an input, all power is dissipated".into(),
-        (_, Some(e)) => percent(e) + &exact,
+        (_, Some(e)) => style::efficiency(e, o.band.as_deref(), &o.outside_laws) + &exact,
         _ => "none: nothing is loaded".into(),
     };
-    out += &format!("  efficiency   {efficiency}\n");
+    out += &(wrap(&efficiency, "  efficiency   ") + "\n");
+    if let Some(band) = &o.band {
+        out += &(wrap(&style::band_ends(band), "               ") + "\n");
+    }
     out += &format!(
         "  power        in {} {unit}, out {} {unit}, lost {} {unit}; balance closes to {:.1e} W\n",
         power(s.input_power_w),

@@ -2,7 +2,7 @@
 
 use willis::study::{BlindDirection, Calibration};
 
-use crate::style::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::style::{assumptions, bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
 
 /// Rows of tests that are shown.
 const MOST_TESTS: usize = 40;
@@ -115,7 +115,7 @@ pub fn text(c: &Calibration) -> String {
     for note in &c.notes {
         out += &(dim(&wrap(note, "  · ")) + "\n");
     }
-    out
+    out + "\n" + &assumptions(&c.assumptions)
 }
 
 /// `tooth friction up 24 %, bearings, by load, down 30 %`.

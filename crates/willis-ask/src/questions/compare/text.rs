@@ -5,7 +5,7 @@ use willis::study::{
     Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair, TextDifference,
 };
 
-use crate::style::{bold, dim, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{assumptions, bold, dim, plural, right, rpm, set_header, show, significant, table, wrap};
 
 /// Results of a state or operation that are shown; the contract has all.
 const MOST_ROWS: usize = 20;
@@ -73,7 +73,19 @@ pub fn text(c: &Comparison) -> String {
     if !equal.is_empty() {
         out += &format!("\n{}\n", wrap(&equal.join("; "), "equal: "));
     }
-    out
+    out + "\n" + &assumed(c)
+}
+
+/// What is assumed of all variants, then of one.
+fn assumed(c: &Comparison) -> String {
+    let [first, others @ ..] = &c.variants[..] else { return String::new() };
+    let (shared, _): (Vec<String>, Vec<String>) =
+        first.assumptions.iter().cloned().partition(|a| others.iter().all(|v| v.assumptions.contains(a)));
+    let own = c.variants.iter().flat_map(|v| {
+        let own = v.assumptions.iter().filter(|a| !shared.contains(a));
+        own.map(|a| format!("{}: {a}", v.label)).collect::<Vec<_>>()
+    });
+    assumptions(&shared.iter().cloned().chain(own).collect::<Vec<_>>())
 }
 
 fn clipped(text: &str) -> String {

@@ -2,7 +2,7 @@
 
 use willis::study::{Basis, CycleReport, Energies, PointVerdict, RepeatedMessage, WorstRow};
 
-use crate::style::{bar, bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::style::{assumptions, bar, bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
 
 /// Units in which a report is easy to read.
 struct Scale {
@@ -163,7 +163,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
             out += &(dim(&wrap(&text, &head)) + "\n");
         }
     }
-    out
+    out + "\n" + &assumptions(&r.assumptions)
 }
 
 fn more(s: &RepeatedMessage) -> String {

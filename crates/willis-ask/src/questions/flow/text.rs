@@ -3,7 +3,9 @@
 use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, MOST_PATHS, Node, NodeKind, OperationFlow, Path, watts};
 
-use crate::style::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{
+    self, assumptions, bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap,
+};
 
 pub fn text(all: &FlowReport) -> String {
     let mut out = bold(&all.train) + "\n";
@@ -15,7 +17,7 @@ pub fn text(all: &FlowReport) -> String {
         out.push('\n');
         out += &operation(o);
     }
-    out + "\n"
+    out + "\n" + &assumptions(&all.assumptions) + "\n"
 }
 
 fn operation(o: &OperationFlow) -> String {
@@ -46,18 +48,22 @@ fn operation(o: &OperationFlow) -> String {
         if o.solutions.len() > 1 {
             out += &bold(&format!("  Solution {} of {}\n", k + 1, o.solutions.len()));
         }
-        out += &graph(s);
+        out += &graph(s, o);
     }
     for s in &o.dissipative_solutions {
         out += &bold("  Only when every loaded member pushes\n");
-        out += &graph(s);
+        out += &graph(s, o);
     }
     out
 }
 
-fn graph(g: &Hypergraph) -> String {
+fn graph(g: &Hypergraph, o: &OperationFlow) -> String {
     let mut out = String::new();
     let efficiency = match g.efficiency {
+        // A band is that of the train as it is seen from the housing.
+        Some(e) if g.output_power_w > 0.0 && g.seen_from.is_none() => {
+            style::efficiency(e, o.band.as_deref(), &o.outside_laws)
+        }
         Some(e) if g.output_power_w > 0.0 => percent(e),
         Some(_) => "none: no power leaves, all of it is lost".into(),
         None => "none: no power enters".into(),
@@ -65,7 +71,7 @@ fn graph(g: &Hypergraph) -> String {
     if let Some(member) = &g.seen_from {
         out += &format!("  seen from    {member}: speeds and powers are less by its own speed\n");
     }
-    out += &format!("  efficiency   {efficiency}\n");
+    out += &(wrap(&efficiency, "  efficiency   ") + "\n");
     out += &format!(
         "  power        in {}, out {}, lost {}; balance closes to {:.1e} W\n",
         watts(g.input_power_w),

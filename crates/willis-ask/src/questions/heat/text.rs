@@ -4,7 +4,7 @@ use willis::analysis::{HeatBasis, HeatReport};
 use willis::heat::Method;
 use willis::study::{DutyHeat, HeatStudy, OperationHeat, RatingStatus, ThermalRating, WarmUp};
 
-use crate::style::{bar, bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::style::{assumptions, bar, bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
 
 /// For eyes.
 pub fn text(all: &HeatStudy) -> String {
@@ -21,11 +21,7 @@ pub fn text(all: &HeatStudy) -> String {
         out += &format!("\n{}\n", bold("Duty cycle, repeated until it returns to its start"));
         out += &of_duty(duty);
     }
-    out += &format!("\n{}\n", bold("Assumptions in force"));
-    for line in &all.assumptions {
-        out += &(wrap(line, "  · ") + "\n");
-    }
-    out
+    out + "\n" + &assumptions(&all.assumptions)
 }
 
 /// Degrees Celsius.

@@ -3,7 +3,10 @@
 use willis::analysis::{LossPoint, LossTable, Losses, Named, SolutionReport, Verdict};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
-use crate::style::{bar, bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{
+    assumptions, band_ends, bar, bold, dim, efficiency_cell, percent, plural, right, rpm, set_header, show,
+    significant, table, wrap,
+};
 use crate::table::Kind::{Flag, Number, Text};
 use crate::table::{Table, word};
 
@@ -158,10 +161,15 @@ pub fn points(all: &LossTable) -> String {
                 out.push('\n');
             }
         }
+        for p in group {
+            if let Some(band) = &p.band {
+                out += &(wrap(&format!("η with other laws: {}", band_ends(band)), "  ") + "\n");
+            }
+        }
         out += &notes(group);
         at = to;
     }
-    out
+    out + "\n" + &assumptions(&all.assumptions)
 }
 
 fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
@@ -214,7 +222,7 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
             row.push(if x == 0.0 { "-".into() } else { significant(x, 4) });
         }
         row.push(significant(p.loss_w, 5));
-        row.push(p.efficiency.map_or("-".into(), percent));
+        row.push(p.efficiency.map_or("-".into(), |e| efficiency_cell(e, p.band.as_deref())));
         row.push(verdict(p));
         t.add_row(row);
     }

@@ -4,7 +4,7 @@ use willis::operating_point::LossKind;
 use willis::study::{OperationSensitivity, QuantitySensitivity, Sensitivity};
 
 use crate::questions::analyze::margins;
-use crate::style::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::style::{assumptions, bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
 use crate::table::Kind::{Flag, Number, Text};
 use crate::table::{Table, word};
 
@@ -19,7 +19,7 @@ pub fn text(all: &Sensitivity) -> String {
         out.push('\n');
         out += &operation(o);
     }
-    out
+    out + "\n" + &assumptions(&all.assumptions)
 }
 
 fn operation(o: &OperationSensitivity) -> String {
@@ -65,6 +65,12 @@ fn operation(o: &OperationSensitivity) -> String {
     }
     if o.quantities.iter().any(|q| q.assumed) {
         out += &dim("  * not given: what is taken instead");
+        out.push('\n');
+    }
+    for q in o.quantities.iter().filter(|q| !q.together.is_empty()) {
+        let text =
+            format!("{} moves in proportion with {}: alone it would contradict them", q.name, q.together.join(", "));
+        out += &dim(&wrap(&text, "  "));
         out.push('\n');
     }
     if !o.without_effect.is_empty() {

@@ -2,7 +2,7 @@
 
 use willis::study::{AxisValue, Extreme, Hold, MinMaxSum, SweepMethod, SweepPlace, SweepReport, WarningKind};
 
-use crate::style::{bold, dim, percent, right, set_header, show, significant, table, wrap};
+use crate::style::{assumptions, bold, dim, percent, right, set_header, show, significant, table, wrap};
 
 /// `10 million points`, `12,345 points`.
 pub fn points(n: u64) -> String {
@@ -130,7 +130,7 @@ pub fn text(report: &SweepReport) -> String {
         out += &wrap(&format!("{}: {what}: {}{place}", plural_points(seen.count), seen.message), "  ");
         out += "\n";
     }
-    out
+    out + "\n" + &assumptions(&study.assumptions)
 }
 
 /// Text values in the order of their axis; as far as they are known, that of the states.

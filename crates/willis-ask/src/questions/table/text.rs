@@ -5,7 +5,7 @@ use willis::exact::Rational;
 use willis::operating_point::LossKind;
 
 use crate::questions::analyze::{at_load_cell, load, starred};
-use crate::style::{bold, dim, percent, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{assumptions, bold, dim, percent, right, rpm, set_header, show, significant, table, wrap};
 
 /// A cell of what is not known.
 const UNKNOWN: &str = "-";
@@ -122,7 +122,7 @@ pub fn text(all: &ShaftTable, speed: Option<f64>) -> String {
             out.push('\n');
         }
     }
-    out + "\n"
+    out + "\n" + &assumptions(&all.assumptions) + "\n"
 }
 
 /// Losses at a load and without one; nothing where they depend on neither.

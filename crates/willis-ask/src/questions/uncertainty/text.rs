@@ -80,6 +80,12 @@ pub fn text(u: &Uncertainty) -> String {
         "  · ",
     );
     out.push('\n');
+    if !u.model_assumptions.is_empty() {
+        out += "Of the file as written\n";
+    }
+    for line in &u.model_assumptions {
+        out += &(wrap(line, "  · ") + "\n");
+    }
     for line in &u.warnings {
         out += &dim(&wrap(line, "  * "));
         out.push('\n');

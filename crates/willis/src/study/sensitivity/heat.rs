@@ -30,7 +30,7 @@ impl<'t> Following<'t> {
     /// `None` where the temperature is given, or nothing follows.
     pub fn new(train: &'t Train, operation: &Operation, point: &Point<'_>, report: &HeatReport) -> Option<Self> {
         let heat = train.heat().filter(|_| report.basis == HeatBasis::Balance)?;
-        let numbers = seeded::numbers(train, operation.temperature, &[Slot::Temperature])?;
+        let numbers = seeded::numbers(train, operation.temperature, &[(Slot::Temperature, 1.0)])?;
         let by_temperature = powers(train, operation, point, numbers, Moved::Train)?;
         let made: Vec<f64> = heat_made(train, heat, &by_temperature).iter().map(|p| p.re).collect();
         let at = heat.at(report.oil_k, &made).ok()?;
@@ -45,13 +45,13 @@ impl<'t> Following<'t> {
     }
 
     /// `dT/dx` for a quantity; its powers get what the temperature adds.
-    pub fn follow(&self, slots: &[Slot], found: &mut Powers) -> f64 {
+    pub fn follow(&self, slots: &[(Slot, f64)], found: &mut Powers) -> f64 {
         let seeded = self.heat.map(&|number, x| {
             let slot = match number {
                 HeatNumber::Density => Slot::Density15,
                 other => Slot::Heat(other),
             };
-            Dual64::new(x, if slots.contains(&slot) { 1.0 } else { 0.0 })
+            Dual64::new(x, slots.iter().find(|(own, _)| *own == slot).map_or(0.0, |(_, rate)| *rate))
         });
         let places = seeded.nodes.iter().zip(&self.at.temperatures);
         let t: Vec<Dual64> = places.map(|(n, t)| n.fixed.unwrap_or(Dual64::from(*t))).collect();

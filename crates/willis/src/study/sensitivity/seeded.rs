@@ -14,11 +14,13 @@ fn constant(value: f64) -> Dual64 {
     Dual64::new(value, 0.0)
 }
 
-/// The numbers of a train in which the given slots move together; `None` where the geometry stands on an edge of what
+/// The numbers of a train in which the given slots move together, each at its rate; `None` where the geometry stands on an edge of what
 /// is possible.
-pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -> Option<Numbers<Dual64>> {
+pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f64)]) -> Option<Numbers<Dual64>> {
     let plain = Numbers::of(train, temperature);
-    let seeded = |slot: Slot, value: f64| Dual64::new(value, if slots.contains(&slot) { 1.0 } else { 0.0 });
+    let seeded = |slot: Slot, value: f64| {
+        Dual64::new(value, slots.iter().find(|(own, _)| *own == slot).map_or(0.0, |(_, rate)| *rate))
+    };
 
     let mut teeth: Vec<Option<Teeth<Dual64>>> = Vec::with_capacity(train.meshes.len());
     for (j, mesh) in train.meshes.iter().enumerate() {

@@ -7,7 +7,7 @@ use crate::model::Target;
 use crate::study::answer::PointAnswer;
 use crate::study::distribution::{Distribution, Reader};
 use crate::study::question::Question;
-use crate::train::{LossPart, Measure, Train};
+use crate::train::{LossPart, Measure};
 
 use super::{LawChoice, Uncertain, UncertainValue, listed, nominal};
 
@@ -19,23 +19,6 @@ const ROUGHNESS: f64 = 0.2;
 const TEMPERATURE: f64 = 5.0;
 /// Standard deviation of the logarithm of what carries heat away.
 const HEAT: f64 = 0.25;
-
-/// The law of a family that a train uses.
-pub(super) fn in_force(train: &Train, family: &str) -> Option<&'static str> {
-    let friction = train.laws.mesh_friction(train.lubrication.is_some());
-    match family {
-        "mesh_friction" => Some(friction.meta().id),
-        "rolling" => train.laws.rolling(&friction).map(|r| r.meta().id),
-        _ => {
-            let own = losses::entries().into_iter().filter(|e| e.family == family);
-            let is_in_force = |id: &str| {
-                let mut laws = train.laws;
-                laws.choose(family, id).is_ok() && laws == train.laws
-            };
-            own.map(|e| e.id).find(|id| is_in_force(id))
-        }
-    }
-}
 
 /// The laws of a family that a train can use, in their order; only those inside their range at the operating point if so
 /// asked and two are. And what is to be said of them.

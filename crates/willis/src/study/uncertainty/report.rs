@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::analysis;
 use crate::contract::{Contract, Format};
 use crate::study::answer::PointVerdict;
 use crate::study::column::{Column, ColumnTable, ColumnValues};
@@ -110,6 +111,9 @@ pub struct Uncertainty {
     pub quantities: Vec<UncertainQuantity>,
     /// What was assumed.
     pub assumptions: Vec<String>,
+    /// What the model leaves out, and what stands in for data that were not given, in the file as written.
+    #[serde(default)]
+    pub model_assumptions: Vec<String>,
     /// What can be said of the file as written.
     pub nominal_verdict: PointVerdict,
     /// Samples by verdict.
@@ -234,6 +238,7 @@ impl UncertaintyPlan<'_> {
             replicates: REPLICATES,
             quantities: self.reported(),
             assumptions: self.assumptions.clone(),
+            model_assumptions: analysis::assumptions(train),
             nominal_verdict: self.nominal_verdict,
             verdicts,
             outputs,
