@@ -77,27 +77,27 @@ impl LawBand {
         let visible = Physics::new(train, operation).visible();
         let base = Base { train, operation, settled, visible };
         let families: Vec<Family> = varied.into_iter().filter_map(|f| Family::of(f, &base, &own, &entries)).collect();
-        let alone = families.iter().flat_map(|f| {
-            let all = f.counted.iter();
-            all.map(|(law, seen)| (vec![(f.name, *law)], seen.efficiency, seen.loss_w)).collect::<Vec<_>>()
-        });
-        let mut found: Vec<(Vec<(&str, &str)>, f64, f64)> = alone.collect();
+        let alone = |f: &Family| -> Vec<Candidate> {
+            let of = |(law, seen): &(&'static str, Seen)| Candidate::new(vec![(f.name, *law)], seen);
+            f.counted.iter().map(of).collect()
+        };
+        let mut found: Vec<Candidate> = families.iter().flat_map(alone).collect();
         if families.len() > 1 {
             for costly in [true, false] {
                 let laws: Vec<_> = families.iter().map(|f| (f.name, f.extreme(costly))).collect();
-                found.extend(base.seen(&laws).map(|seen| (laws, seen.efficiency, seen.loss_w)));
+                found.extend(base.seen(&laws).map(|seen| Candidate::new(laws, &seen)));
             }
         }
-        let end = |(laws, efficiency, loss_w): &(Vec<(&str, &str)>, f64, f64)| {
+        let end = |c: &Candidate| {
             let law = |f: &Family| {
-                let put = laws.iter().find(|l| l.0 == f.name).map_or(f.in_force, |l| l.1);
+                let put = c.laws.iter().find(|l| l.0 == f.name).map_or(f.in_force, |l| l.1);
                 (f.name.to_owned(), put.to_owned())
             };
-            BandEnd { efficiency: *efficiency, loss_w: *loss_w, laws: Named(families.iter().map(law).collect()) }
+            let laws = Named(families.iter().map(law).collect());
+            BandEnd { efficiency: c.efficiency, loss_w: c.loss_w, laws }
         };
-        let low = found.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let high = found.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let (low, high) = (end(low), end(high));
+        let by = |a: &&Candidate, b: &&Candidate| a.efficiency.total_cmp(&b.efficiency);
+        let (low, high) = (end(found.iter().min_by(by)?), end(found.iter().max_by(by)?));
         (low.efficiency < high.efficiency).then(|| Self {
             low,
             high,
@@ -148,6 +148,20 @@ impl LawBand {
     /// Whether only laws outside their ranges were left to compare in a family.
     pub fn beyond_ranges(&self) -> bool {
         self.families.iter().any(|(_, f)| f.beyond_ranges)
+    }
+}
+
+/// What may be an end of a band.
+struct Candidate {
+    /// Family and law of what was put in force.
+    laws: Vec<(&'static str, &'static str)>,
+    efficiency: f64,
+    loss_w: f64,
+}
+
+impl Candidate {
+    fn new(laws: Vec<(&'static str, &'static str)>, seen: &Seen) -> Self {
+        Self { laws, efficiency: seen.efficiency, loss_w: seen.loss_w }
     }
 }
 
