@@ -61,15 +61,17 @@ pub(crate) fn pages(context: &Context) -> Outcome {
 fn reader(context: &Context, folder: &Path) -> Result<(), String> {
     let fail = |e: std::io::Error| format!("{}: {e}", folder.display());
     let _ = fs::remove_dir_all(folder);
-    fs::create_dir_all(folder.join("examples")).map_err(fail)?;
+    fs::create_dir_all(folder.join("examples/design")).map_err(fail)?;
     for file in example_files(context)? {
         fs::copy(context.root.join(&file), folder.join(&file)).map_err(fail)?;
     }
-    // Profiles stand beside the trains.
-    for entry in fs::read_dir(context.root.join("examples")).map_err(fail)? {
-        let file = entry.map_err(fail)?.path();
-        if let (Some(name), true) = (file.file_name(), file.extension().is_some_and(|e| e == "csv")) {
-            fs::copy(&file, folder.join("examples").join(name)).map_err(fail)?;
+    // Profiles stand beside the trains, design files in a folder of theirs.
+    for (place, ending) in [("examples", "csv"), ("examples/design", "toml")] {
+        for entry in fs::read_dir(context.root.join(place)).map_err(fail)? {
+            let file = entry.map_err(fail)?.path();
+            if let (Some(name), true) = (file.file_name(), file.extension().is_some_and(|e| e == ending)) {
+                fs::copy(&file, folder.join(place).join(name)).map_err(fail)?;
+            }
         }
     }
     Ok(())
