@@ -73,11 +73,15 @@ fn a_drag_gives_the_answer_of_the_text() {
     assert!(compared > 30, "{compared}");
 }
 
-/// An answer without what gears cost at the load of the file: a frame shows one point and does not ask for that.
+/// An answer without what gears cost at the load of the file and what other laws make of an efficiency: a frame shows one
+/// point by the laws in force and does not ask for that.
 fn without_loads(answer: &str) -> Value {
     let mut answer: Value = serde_json::from_str(answer).expect("JSON");
     for (_, row) in answer["ratios"].as_object_mut().into_iter().flatten() {
         row.as_object_mut().expect("a row").shift_remove("at_load");
+    }
+    for operation in answer["operations"].as_array_mut().into_iter().flatten() {
+        operation.as_object_mut().expect("an operation").shift_remove("band");
     }
     answer
 }

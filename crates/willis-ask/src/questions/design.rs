@@ -128,7 +128,8 @@ impl Design {
             }
             (None, None, None) => {
                 let d = Diagnostic::new(Code::MissingKey, "file", "nothing says what is to be designed");
-                let hint = "name a design file; or a kind of drive, `--kind 3k --ratio 100`; or a train, `--like FILE`";
+                let hint =
+                    "name a design file; or a `kind` of drive with its `ratio`; or a train that it shall be `like`";
                 return Err(d.hint(hint).into());
             }
         };
@@ -198,8 +199,8 @@ impl Question for Design {
     const OF: Of = Of::Nothing;
     const TABLES: &'static [&'static str] = &["trains", "waterfall", "relaxations"];
     const FORMS: &'static [Form] = &[
-        Form { name: "train", endings: &["toml"], about: "the rows of --write as train files" },
-        Form { name: "design-file", endings: &[], about: "the design file that --kind or --like stands for" },
+        Form { name: "train", endings: &["toml"], about: "the rows to write as train files" },
+        Form { name: "design-file", endings: &[], about: "the design file that a kind of drive or a train stands for" },
     ];
     const EXTRAS: &'static [Extra] = &[
         #[cfg(feature = "pictures")]
@@ -208,7 +209,11 @@ impl Question for Design {
             value: "FILE.svg",
             about: "Draw the rows as points over two objectives into this SVG file",
         },
-        Extra { name: "progress", value: "FILE.json", about: "Write how far the search is, for --resume" },
+        Extra {
+            name: "progress",
+            value: "FILE.json",
+            about: "Write how far the search is into this file, to go on with it",
+        },
     ];
     const IS_CUT: bool = true;
     type Answer = DesignFound;
@@ -235,7 +240,7 @@ impl Question for Design {
         }
         if self.kind.is_some() && self.ratio.is_none() {
             let d = Diagnostic::new(Code::MissingKey, "ratio", "`kind` needs a ratio");
-            wrong.push(d.hint("give a number or a range: --ratio 100, --ratio 95..105"));
+            wrong.push(d.hint("give a number or a range: 100, or 95..105"));
         }
         if self.write.contains(&0) {
             let d = Diagnostic::new(Code::OutOfRange, "write", "rows are counted from 1");
@@ -322,7 +327,7 @@ impl Question for Design {
 
     fn told(&self, answer: &DesignFound) -> Vec<String> {
         match (&answer.report.rows[..], self.write.is_empty()) {
-            ([_, ..], true) => vec!["note: `--write 1` gives row 1 as a train file".to_owned()],
+            ([_, ..], true) => vec!["note: `write` gives a row as a train file".to_owned()],
             _ => vec![],
         }
     }

@@ -180,15 +180,11 @@ impl Question for Schemes {
     const OF: Of = Of::Nothing;
     const TABLES: &'static [&'static str] = &["schemes", "gears", "waterfall", "hybrids", "modes"];
     const FORMS: &'static [Form] =
-        &[Form { name: "train", endings: &["toml"], about: "the train files of the rows that --write names" }];
+        &[Form { name: "train", endings: &["toml"], about: "the rows to write as train files" }];
     const EXTRAS: &'static [Extra] = &[
         #[cfg(feature = "pictures")]
         Extra { name: "plot", value: "FILE.svg", about: "Draw the first schemes side by side into this SVG file" },
-        Extra {
-            name: "progress",
-            value: "FILE.json",
-            about: "Keep what is finished in this file, from which --resume goes on",
-        },
+        Extra { name: "progress", value: "FILE.json", about: "Keep what is finished in this file, to go on with it" },
     ];
     const IS_CUT: bool = true;
     type Answer = SchemesAnswer;

@@ -84,6 +84,16 @@ pub fn law(id: &str) -> String {
     by().get(id).map_or_else(|| id.replace(['-', '_'], " "), |by| (*by).to_owned())
 }
 
+/// A law of a family: by its authors, or, where it goes by none, what it is.
+pub fn law_of(family: &str, id: &str) -> String {
+    let all = entries();
+    let own = all.iter().find(|e| e.family == family && e.id == id);
+    match own.filter(|e| e.by.is_empty()) {
+        Some(e) => format!("{family}: {}", e.title),
+        None => format!("{family} = {id}"),
+    }
+}
+
 /// A law that causes a loss of some kind, by its title; a law of one name stands in several families.
 pub fn law_title(kind: Option<LossKind>, id: &str) -> String {
     if id == "given" {

@@ -13,7 +13,7 @@ use willis::train::AS_DRAWN;
 use super::{Findings, TOLD, and_more, notice};
 use crate::FigureKind;
 use crate::parts::style::{figures, watts};
-use crate::parts::words::{law_title, spelled};
+use crate::parts::words::{law_of, law_title, spelled};
 use crate::report::document::{Block, Column, Level, Section, Term};
 use crate::report::formula::{Display, mathml};
 
@@ -223,7 +223,7 @@ fn value(all: &Findings<'_>, o: &OperationReport) -> Option<Block> {
             let decimals = band.decimals();
             let percent = |e: f64| format!("{:.decimals$} %", 100.0 * e);
             let [low, high] = [&band.low, &band.high].map(|end| {
-                let laws: Vec<String> = end.laws.iter().map(|(f, law)| format!("{f} = {law}")).collect();
+                let laws: Vec<String> = end.laws.iter().map(|(f, law)| law_of(f, law)).collect();
                 format!("{} ({})", percent(end.efficiency), laws.join(", "))
             });
             let which = if band.beyond_ranges() { "laws, some outside their ranges" } else { "laws in range" };
