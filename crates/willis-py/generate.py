@@ -239,7 +239,10 @@ def argument(name: str, schema: dict[str, Any], root: dict[str, Any]) -> tuple[s
     if name == "over":
         return "Mapping[str, object] | Sequence[str] | str", null
     if types == "string":
-        return ("Quantity" if name in ("from", "to", "fixed_step", "speed") else "str"), null
+        # Numbers of a wish, and two ends of a range.
+        if name in ("ratio", "tolerance", "forward", "backward"):
+            return "float | str | tuple[float, float]", null
+        return ("Quantity" if name in ("from", "to", "fixed_step", "speed", "ring") else "str"), null
     if types == "integer":
         return "int", null
     if types == "number":
@@ -248,6 +251,8 @@ def argument(name: str, schema: dict[str, Any], root: dict[str, Any]) -> tuple[s
         return "bool", null
     if types == "array":
         items, _ = argument("", own.get("items", {}), root)
+        if name == "module":
+            return "Sequence[Quantity] | Quantity", null
         if name in ("speeds", "torques", "powers", "temperature"):
             return "Mapping[str, Quantity] | Sequence[Quantity] | Quantity", null
         if own.get("minItems") and own.get("minItems") == own.get("maxItems"):

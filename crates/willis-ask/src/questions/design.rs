@@ -24,8 +24,9 @@ use crate::{Attachment, Extra, File, Form, Given, Holds, Of, Question, Refusal};
 /// searched: the answer says how many trains satisfy the wish, that there are no others, and which of them no other one
 /// beats. For an empty answer it says which wish must give, and how far.
 ///
-/// Without a file: `--kind 3k --ratio 100 --ring 90mm`. With a train of your own: `--like TRAIN` marks it among the rows;
-/// without a file it is also where the search begins. `--write 3` gives row 3 as a train file for every other command.
+/// Without a file, a kind of drive with its ratio will do: --kind with --ratio, perhaps --ring. With --like a train of your
+/// own is marked among the rows; without a file it is also where the search begins. With --write rows are train files for
+/// every other command.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -146,7 +147,7 @@ impl Design {
             let refused = |wrong: Diagnostics| Refusal::File(wrong, Attachment { text: String::new(), ..file.clone() });
             let part: Progress = serde_json::from_str(&file.text).map_err(|e| {
                 let d = Diagnostic::new(Code::Syntax, "", format!("is not the progress of a search: {e}"));
-                refused(d.hint("give a file that `--progress` has written").into())
+                refused(d.hint("give a file of progress that this question has written").into())
             })?;
             whole = design.merge(whole, part).map_err(refused)?;
         }

@@ -4317,6 +4317,9 @@ class ModesAnswer(Answer):
     def assumptions(self) -> list[str]:
         """What stands in for data that were not given."""
 
+class DesignAnswer(Answer):
+    """What was found, and how far the search is."""
+
 class SchemesHybridWish(Record):
     """What a hybrid must do.
 
@@ -7435,6 +7438,15 @@ class ExplainExplained(Record):
     def explanation(self) -> str:
         """What it means, why it matters and what to do."""
 
+class ExplainExplainedRule(Record):
+    """A rule that tooth numbers may have to follow."""
+    @property
+    def name(self) -> str:
+        """Its name in a design file."""
+    @property
+    def explanation(self) -> str:
+        """What it demands, by which formula, and why."""
+
 class ExplainAnswer(Answer):
     """Diagnostic codes."""
     @property
@@ -7443,3 +7455,6 @@ class ExplainAnswer(Answer):
     @property
     def codes(self) -> list[ExplainExplained]:
         """The code that was asked for, or all."""
+    @property
+    def rules(self) -> list[ExplainExplainedRule]:
+        """The rule for teeth that was asked for, or all."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from . import _contracts as contracts
     from ._train import Train
 
-__all__ = ["new", "schemes", "laws", "validate", "explain"]
+__all__ = ["new", "design", "schemes", "laws", "validate", "explain"]
 
 
 class Questions:
@@ -1173,6 +1173,99 @@ def new(
     )
 
 
+def design(
+    *,
+    file: str | os.PathLike[str] | object | None = None,
+    like: str | os.PathLike[str] | object | None = None,
+    kind: str | None = None,
+    ratio: float | str | tuple[float, float] | None = None,
+    tolerance: float | str | tuple[float, float] | None = None,
+    ring: Quantity | None = None,
+    module: Sequence[Quantity] | Quantity | None = None,
+    planets: str | None = None,
+    forward: float | str | tuple[float, float] | None = None,
+    backward: float | str | tuple[float, float] | None = None,
+    top: int | None = None,
+    sort: str | None = None,
+    all: bool | None = None,
+    write: Sequence[int] | None = None,
+    shard: str | None = None,
+    resume: Sequence[str | os.PathLike[str] | object] | None = None,
+    threads: int | None = None,
+    yes: bool = False,
+    progress: bool | Progress | None = None,
+) -> "contracts.DesignAnswer":
+    """Find every train that does what is wanted: tooth numbers, numbers of planets, modules.
+
+    The file is a train file in which teeth and planets are ranges ("18..60", "18.. odd", [23, 29]) with a table
+    [design]: ratios of the states with tolerances, rules, limits, demands, and what is to be small or large. The
+    whole space is searched: the answer says how many trains satisfy the wish, that there are no others, and which
+    of them no other one beats. For an empty answer it says which wish must give, and how far.
+
+    Without a file, a kind of drive with its ratio will do: ``kind`` with ``ratio``, perhaps ``ring``. With ``like``
+    a train of your own is marked among the rows; without a file it is also where the search begins. With ``write``
+    rows are train files for every other command.
+
+    Parameters
+    ----------
+    file
+        The design file (TOML), or - for standard input.
+    like
+        A train that exists: a row of its own. Without FILE, trains with its connections, ratios and rings are searched.
+    kind
+        Without a file: the kind of drive, simple, two-stage or 3k.
+    ratio
+        Of ``kind``: the ratio, a number or low..high.
+    tolerance
+        Of ``kind`` and ``like``: how far a ratio may be off, as a part. Default: 0.01.
+    ring
+        Of ``kind``: the largest reference diameter of a ring: 90mm.
+    module
+        Of ``kind``: modules that are allowed: 0.5mm,0.6mm. Default where the ring is limited: those of DIN 780 to 8 mm.
+    planets
+        Of ``kind``: numbers of planets. Default: 3..5.
+    forward
+        Of ``kind``: the least efficiency from input to output.
+    backward
+        Of ``kind``: the least efficiency from output to input: a drive that can be driven back.
+    top
+        Show so many rows. Default: 20.
+    sort
+        Sort by error, ring_diameter, forward, backward, lock_margin, planet_spin, member_speed or element_torque.
+        Default: the first objective of the file.
+    all
+        Rows of all trains that satisfy the wish, not only of those that no other one beats.
+    write
+        Give these rows as train files, by their numbers: 3, or 1,2,5 into a folder.
+    shard
+        Search only a part of the space: 2/8 is the second of eight.
+    resume
+        Go on with what ``progress`` wrote; several times to put parts together.
+    threads, yes, progress
+        Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+        called with a word, how much is done and how much there is.
+
+    Examples
+    --------
+    >>> found = willis.design(kind="3k", ratio=100, ring=0.09, module=0.0008, sort="forward")
+    >>> found.data.waterfall[0].trains, found.data.completeness.complete
+    (1064, True)
+    >>> willis.Train(found.files("train").popitem()[1].decode()).analyze().state().drive.verdict
+    'unique'
+    """
+    return cast(
+        "contracts.DesignAnswer",
+        _ask(
+            "design",
+            [],
+            {"file": file, "like": like, "kind": kind, "ratio": ratio, "tolerance": tolerance, "ring": ring, "module": module, "planets": planets, "forward": forward, "backward": backward, "top": top, "sort": sort, "all": all, "write": write, "shard": shard, "resume": resume},
+            threads=threads,
+            yes=yes,
+            progress=progress,
+        ),
+    )
+
+
 def schemes(
     *,
     sets: int | None = None,
@@ -1380,18 +1473,18 @@ def validate(
 
 
 def explain(
-    code: Literal["E001", "E002", "E003", "E004", "E005", "E006", "E007", "E008", "E101", "E102", "E103", "E104", "E105", "E106", "E107", "E108", "E109", "E110", "E111", "E112", "E113", "E114", "E201", "E202", "E203", "E204", "E205", "E206", "E207", "E208", "E209", "E210", "E211", "E212", "W301", "W302", "W303", "W304", "W305", "W306", "W307", "W308", "W309", "W310", "W311", "W312", "W313", "W314", "W315", "W316", "W317", "W318", "W319", "W320", "W321", "W322", "W330", "W331", "N401", "N402", "N403", "N404", "N405"] | None = None,
+    code: Literal["E001", "E002", "E003", "E004", "E005", "E006", "E007", "E008", "E101", "E102", "E103", "E104", "E105", "E106", "E107", "E108", "E109", "E110", "E111", "E112", "E113", "E114", "E201", "E202", "E203", "E204", "E205", "E206", "E207", "E208", "E209", "E210", "E211", "E212", "W301", "W302", "W303", "W304", "W305", "W306", "W307", "W308", "W309", "W310", "W311", "W312", "W313", "W314", "W315", "W316", "W317", "W318", "W319", "W320", "W321", "W322", "W330", "W331", "N401", "N402", "N403", "N404", "N405", "assembly", "clearance", "interference", "hunting", "in-phase", "in-sequence", "shifts"] | None = None,
     *,
     threads: int | None = None,
     yes: bool = False,
     progress: bool | Progress | None = None,
 ) -> "contracts.ExplainAnswer":
-    """Explain a diagnostic code, or list all of them.
+    """Explain a diagnostic code or a rule for teeth, or list all of them.
 
     Parameters
     ----------
     code
-        The code, such as E106.
+        The code, such as E106, or a rule of ``design``, such as hunting.
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
