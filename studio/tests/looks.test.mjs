@@ -184,6 +184,8 @@ test("paper: four panels and the table, light, within the sheet", { timeout: 60_
   assert.equal(told.seen.length, 6);
   assert.deepEqual([told.wide, told.theme, told.bar], [0, "light", 0]);
   assert.ok(told.rows > 8);
+  // Figures follow the size of the sheet a moment later than the sheet itself.
+  await page.waitForFunction(() => document.documentElement.scrollHeight <= innerHeight, null, { timeout: 20_000 });
   const pdf = await page.pdf({ preferCSSPageSize: true, printBackground: true });
   if (process.env.PICTURES) writeFileSync(`${process.env.PICTURES}/paper.pdf`, pdf);
   assert.equal(pdf.toString("latin1").match(/\/Type\s*\/Page\b/g).length, 1, "pages");

@@ -16,9 +16,9 @@ let lawful = false;
 
 /** Where two answers differ first. */
 function difference(a, b, place = "") {
-  // How fast an iteration converged is the quotient of two differences that are nothing but round-off; what gears cost at a load
-  // is a question of its own, which a page with one point does not ask.
-  if (Object.is(a, b) || /\.(convergence|at_load)$/.test(place)) return null;
+  // How fast an iteration converged is the quotient of two differences that are nothing but round-off; what gears cost at a load,
+  // and what other laws make of an efficiency, are questions of their own, which a page with one point does not ask.
+  if (Object.is(a, b) || /\.(convergence|at_load|band)$/.test(place)) return null;
   // Residuals, W, are the round-off of powers that may be a million times larger.
   if (lawful && place.endsWith("residual_w") && Math.abs(a - b) <= 1e-6) return null;
   if (lawful && typeof a === "number" && typeof b === "number" && Math.abs(a - b) <= 1e-12 * Math.max(Math.abs(a), Math.abs(b), 1)) return null;
