@@ -19,7 +19,7 @@ use crate::{Attachment, Extra, File, Form, Given, Holds, Of, Question, Refusal};
 
 /// Find every train that does what is wanted: tooth numbers, numbers of planets, modules.
 ///
-/// The file is a train file in which teeth and planets are ranges ("18..60", "18.. odd", [23, 29]) with a table [design]:
+/// The file is a train file in which teeth and planets are ranges ("18..60", "18.. odd", [23, 29]) with a table `[design]`:
 /// ratios of the states with tolerances, rules, limits, demands, and what is to be small or large. The whole space is
 /// searched: the answer says how many trains satisfy the wish, that there are no others, and which of them no other one
 /// beats. For an empty answer it says which wish must give, and how far.
