@@ -8,7 +8,7 @@ fn design() -> &'static Entry {
     willis_ask::question("design").unwrap()
 }
 
-fn robot() -> Value {
+fn joint() -> Value {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/design/joint.toml"));
     json!({ "name": "joint.toml", "text": text })
 }
@@ -29,14 +29,14 @@ fn progress(request: Value) -> String {
 
 #[test]
 fn parts_are_the_whole_bit_for_bit() {
-    let whole = answer(json!({ "file": robot() })).json();
-    let part = |k: &str| json!({ "name": k, "text": progress(json!({ "file": robot(), "shard": k })) });
+    let whole = answer(json!({ "file": joint() })).json();
+    let part = |k: &str| json!({ "name": k, "text": progress(json!({ "file": joint(), "shard": k })) });
     let parts = ["2/3", "1/3", "3/3"].map(part);
-    assert_eq!(answer(json!({ "file": robot(), "resume": parts })).json(), whole);
+    assert_eq!(answer(json!({ "file": joint(), "resume": parts })).json(), whole);
     // What is missing is searched.
-    assert_eq!(answer(json!({ "file": robot(), "resume": [part("3/5")] })).json(), whole);
+    assert_eq!(answer(json!({ "file": joint(), "resume": [part("3/5")] })).json(), whole);
     // Pieces of other machines.
-    let request: Box<dyn Request> = design().request(json!({ "file": robot() })).unwrap();
+    let request: Box<dyn Request> = design().request(json!({ "file": joint() })).unwrap();
     let pieces: Vec<Vec<u8>> = (0..4).map(|k| request.piece(&[], k, 4, &Serial).unwrap()).collect();
     let of: std::sync::Arc<[Given]> = std::sync::Arc::new([]);
     assert_eq!(request.gather(of.clone(), &pieces).unwrap().json(), whole);
@@ -45,7 +45,7 @@ fn parts_are_the_whole_bit_for_bit() {
 
 #[test]
 fn rows_are_written_as_trains() {
-    let two = answer(json!({ "file": robot(), "write": [1, 3] })).write("train").unwrap();
+    let two = answer(json!({ "file": joint(), "write": [1, 3] })).write("train").unwrap();
     assert_eq!(two.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["design-1.toml", "design-3.toml"]);
     for file in two {
         let given = Given::read(&file.name, std::str::from_utf8(&file.bytes).unwrap()).unwrap();
@@ -71,9 +71,34 @@ fn what_was_stopped_says_how_far_it_came() {
         }
         fn run(&self, _: usize, _: &(dyn Fn(usize) + Sync)) {}
     }
-    let request = design().request(json!({ "file": robot() })).unwrap();
+    let request = design().request(json!({ "file": joint() })).unwrap();
     let answer = request.ask(&[], &Stops).unwrap();
     assert!(answer.is_partial() && answer.text().contains("0.0 % of the space is done"), "{}", answer.text());
+}
+
+#[test]
+fn rows_that_were_stopped_are_missing_and_the_counts_stay() {
+    /// Does everything but what is cut into few parts: the rows.
+    struct Few;
+    impl Work for Few {
+        fn cancelled(&self) -> bool {
+            true
+        }
+        fn run(&self, parts: usize, job: &(dyn Fn(usize) + Sync)) {
+            if parts > 20 {
+                (0..parts).for_each(job);
+            }
+        }
+    }
+    for all in [false, true] {
+        let request = design().request(json!({ "file": joint(), "all": all })).unwrap();
+        let answer = request.ask(&[], &Few).unwrap();
+        let text = answer.text();
+        assert!(
+            answer.is_partial() && text.contains("Rows are missing") && text.contains("1\u{a0}747\u{a0}368"),
+            "{text}"
+        );
+    }
 }
 
 #[test]
@@ -88,12 +113,12 @@ fn an_empty_answer_says_what_must_give() {
 #[test]
 fn what_is_wrong_is_said() {
     let file = |text: &str| json!({ "file": { "name": "mine.toml", "text": text } });
-    let robot_with = |a: &str, b: &str| {
-        let text = robot()["text"].as_str().unwrap().replace(a, b);
+    let joint_with = |a: &str, b: &str| {
+        let text = joint()["text"].as_str().unwrap().replace(a, b);
         json!({ "file": { "name": "mine.toml", "text": text } })
     };
-    let resumed = |text: &str| json!({ "file": robot(), "resume": [{ "name": "p.json", "text": text }] });
-    let good = progress(json!({ "file": robot(), "shard": "1/2" }));
+    let resumed = |text: &str| json!({ "file": joint(), "resume": [{ "name": "p.json", "text": text }] });
+    let good = progress(json!({ "file": joint(), "shard": "1/2" }));
     for (request, says) in [
         (json!({}), "nothing says what is to be designed"),
         (json!({ "kind": "4k", "ratio": "3" }), "there is no kind of drive `4k`"),
@@ -101,29 +126,29 @@ fn what_is_wrong_is_said() {
         (json!({ "kind": "3k", "ratio": "100", "planets": "none" }), "design.planets"),
         (json!({ "kind": "3k", "ratio": "100", "backward": "1.2" }), "no efficiency is above 1"),
         (json!({ "kind": "3k", "ratio": "100", "module": ["-1 mm"] }), "must be above 0"),
-        (json!({ "file": robot(), "sort": "cheapest" }), "nothing that a design is judged by"),
-        (json!({ "file": robot(), "shard": "0/3" }), "no part 0 of 3"),
-        (json!({ "file": robot(), "write": [0] }), "counted from 1"),
+        (json!({ "file": joint(), "sort": "cheapest" }), "nothing that a design is judged by"),
+        (json!({ "file": joint(), "shard": "0/3" }), "no part 0 of 3"),
+        (json!({ "file": joint(), "write": [0] }), "counted from 1"),
         (file(""), "no ratio is asked for"),
         (file("[design"), "mine.toml"),
-        (robot_with("\"12..60\"", "\"60..12\""), "60..12"),
-        (robot_with("\"..120\"", "\"..12000000000\""), "12000000000"),
-        (robot_with("ratio = [99, 101]", "ratio = [101, 99]"), "the window from 101 to 99 is empty"),
-        (robot_with("\"hunting\"", "\"huntin\""), "there is no rule `huntin`"),
-        (robot_with("any_sign", "state = \"9\", any_sign"), "no state `9`"),
-        (robot_with("0.8 mm", "0.8"), "the unit is missing"),
+        (joint_with("\"12..60\"", "\"60..12\""), "60..12"),
+        (joint_with("\"..120\"", "\"..12000000000\""), "12000000000"),
+        (joint_with("ratio = [99, 101]", "ratio = [101, 99]"), "the window from 101 to 99 is empty"),
+        (joint_with("\"hunting\"", "\"huntin\""), "there is no rule `huntin`"),
+        (joint_with("any_sign", "state = \"9\", any_sign"), "no state `9`"),
+        (joint_with("0.8 mm", "0.8"), "the unit is missing"),
         (resumed("{}"), "is not the progress of a search"),
         (resumed("[1, 2"), "is not the progress of a search"),
         (resumed(&good.replace("P1", "P2")), "another design"),
         (resumed(&good.replacen("[[", "[[-1,", 1)), "progress"),
         (resumed(&good.replacen("\"front\":[[[", "\"front\":[[[9,", 1)), "was not written by a search"),
         (json!({ "like": { "name": "l", "text": "x" } }), "l"),
-        (json!({ "file": robot(), "like": { "name": "l", "text": "format = 1" } }), "members"),
+        (json!({ "file": joint(), "like": { "name": "l", "text": "format = 1" } }), "members"),
     ] {
         let refusal = refused(request.clone());
         let text = refusal.render(&[], false);
         assert!(text.contains(says), "{request}: {text}");
     }
-    let rows = answer(json!({ "file": robot(), "write": [9] })).write("train").unwrap_err();
+    let rows = answer(json!({ "file": joint(), "write": [9] })).write("train").unwrap_err();
     assert!(rows.to_string().contains("there is no row 9"));
 }

@@ -186,12 +186,12 @@ impl Design {
         design: teeth::Design,
         file: &Attachment,
         progress: Progress,
-        stopped: bool,
         work: &dyn Work,
     ) -> Result<DesignFound, Refusal> {
         let request = self.request()?;
         let report = design.answer_of(progress.clone(), &request, work).map_err(|w| Refusal::File(w, file.clone()))?;
-        Ok(DesignFound { report, design: Some(design), progress, stopped })
+        // Rows are worked out after the search, and may be what was stopped.
+        Ok(DesignFound { report, design: Some(design), progress, stopped: work.cancelled() })
     }
 }
 
@@ -262,8 +262,7 @@ impl Question for Design {
         let (design, file) = self.read()?;
         let before = self.resumed(&design)?;
         let progress = design.search(before, request.shard, work).map_err(|w| Refusal::File(w, file.clone()))?;
-        let stopped = work.cancelled() && !progress.is_complete();
-        self.found(design, &file, progress, stopped, work)
+        self.found(design, &file, progress, work)
     }
 
     fn text(&self, answer: &DesignFound, _: &[Given]) -> String {
@@ -346,6 +345,6 @@ impl Question for Design {
     fn gather(&self, _: &[Given], pieces: &[Vec<u8>]) -> Result<DesignFound, Refusal> {
         let (design, file) = self.read()?;
         let progress = parts(pieces, |a: Progress, b| design.merge(a, b))?.unwrap_or_default();
-        self.found(design, &file, progress, false, &willis::work::Serial)
+        self.found(design, &file, progress, &willis::work::Serial)
     }
 }

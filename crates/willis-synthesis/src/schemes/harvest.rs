@@ -163,3 +163,12 @@ pub(crate) fn apart(one: &[usize], other: &[usize]) -> Result<(), Diagnostics> {
     let message = format!("part {part} of the search is in both results");
     Err(Diagnostic::new(Code::Conflict, "", message).hint("give every part once").into())
 }
+
+/// Those of some parts that there are and that are not done, each once, in order.
+pub(super) fn missing(parts: impl IntoIterator<Item = usize>, of: usize, done: &[usize]) -> Vec<usize> {
+    let mut all: Vec<usize> =
+        parts.into_iter().filter(|part| *part < of && done.binary_search(part).is_err()).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}

@@ -459,10 +459,7 @@ impl HybridSearch {
     ///
     /// If the work is cancelled, the parts that were not finished are missing; the rest of the harvest holds.
     pub fn harvest(&self, work: &dyn Work, parts: impl IntoIterator<Item = usize>, into: &mut HybridHarvest) {
-        let known = |part: &usize| *part < self.parts() && into.done.binary_search(part).is_err();
-        let mut parts: Vec<usize> = parts.into_iter().filter(known).collect();
-        parts.sort_unstable();
-        parts.dedup();
+        let parts = harvest::missing(parts, self.parts(), &into.done);
         work.begin("parts", parts.len() as u64);
         let whole = Mutex::new(std::mem::take(into));
         work.run(parts.len(), &|k| {

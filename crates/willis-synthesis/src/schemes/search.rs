@@ -7,7 +7,7 @@ use willis::exact::Rational;
 use willis::work::{Effort, Work};
 
 use super::choose::{Chooser, Found, Goal, has_spare};
-use super::harvest::{Harvest, Row, Tally, apart, fits, parse, spoilt};
+use super::harvest::{Harvest, Row, Tally, apart, fits, missing, parse, spoilt};
 use super::layout::{GROUND, INPUT, Layout, Layouts, MAX_SHAFTS, OUTPUT, Prefix, count_layouts};
 use super::measure;
 use super::motion::{self, Motion};
@@ -212,10 +212,7 @@ impl Search {
     ///
     /// If the work is cancelled, the parts that were not begun are missing; the rest of the harvest holds.
     pub fn harvest(&self, work: &dyn Work, parts: impl IntoIterator<Item = usize>, into: &mut Harvest) {
-        let known = |part: &usize| *part < self.parts() && into.done.binary_search(part).is_err();
-        let mut parts: Vec<usize> = parts.into_iter().filter(known).collect();
-        parts.sort_unstable();
-        parts.dedup();
+        let parts = missing(parts, self.parts(), &into.done);
         work.begin("parts", parts.len() as u64);
         let whole = Mutex::new(std::mem::take(into));
         // Every thread that comes takes a room or makes one.

@@ -84,11 +84,10 @@ impl Design {
         let sort = request.sort.or(self.objectives.first().copied()).unwrap_or(Objective::Error);
         let (done, complete) = (progress.steps_done(), progress.is_complete());
         let top = request.top.unwrap_or(20);
-        let of_all = request.all && complete;
-        let shown = match of_all {
-            true => self.best(sort, top, work).ok_or(willis::work::Cancelled)?,
-            false => progress.front.clone(),
-        };
+        // What was found is not lost because looking for more was interrupted.
+        let best = if request.all && complete { self.best(sort, top, work) } else { None };
+        let of_all = best.is_some();
+        let shown = best.unwrap_or_else(|| progress.front.clone());
         let mut chosen: Vec<(f64, Teeth, Judged)> = shown
             .iter()
             .filter_map(|teeth| {
@@ -107,7 +106,8 @@ impl Design {
             work.advance(1);
             row
         });
-        // What was found is not lost because its certificates were interrupted; without them there is no row.
+        // Without a certificate there is no row; the counts stand all the same.
+        let interrupted = rows.is_err() || request.all && complete && !of_all;
         let rows: Vec<DesignRow> = rows.unwrap_or_default();
         let own = match &request.own {
             Some((name, text)) => Some(self.own(name, text, &progress.front)?),
@@ -136,7 +136,10 @@ impl Design {
             diagnostics.push(Diagnostic::new(Code::NotEnumerated, "", message));
         }
         let relaxations = if complete && left == 0 { super::relax::relaxations(self, work) } else { vec![] };
-        let statement = self.statement(&space, complete, done, progress.of, left);
+        let mut statement = self.statement(&space, complete, done, progress.of, left);
+        if interrupted {
+            statement += " Rows are missing: working them out was interrupted.";
+        }
         Ok(DesignAnswer {
             format: Format::new(),
             name: self.name.clone(),

@@ -474,6 +474,8 @@ impl Plan {
 
     pub(super) fn piece(&self, resume: &[Attachment], k: usize, n: usize, work: &dyn Work) -> Result<Vec<u8>, Refusal> {
         let (left, _) = self.left(&self.kept(resume)?);
+        // Every n-th part from the k-th on: parts beside each other take alike long, so that all pieces do. What is passed
+        // over belongs to the other pieces; `gather` refuses an answer in which a part is missing.
         let own: Vec<usize> = left.into_iter().skip(k).step_by(n.max(1)).collect();
         let mut kept = self.kept(&[])?;
         self.harvest(&mut kept, &own, work)?;
