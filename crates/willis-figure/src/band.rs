@@ -159,6 +159,7 @@ fn bands_within(
     work: &dyn Work,
     detail: Detail,
 ) -> Result<Bands, Diagnostics> {
+    let began = work.clock();
     let plan = UncertaintyPlan::new(model, request)?;
     let question = plan.question();
     let train = question.model().train();
@@ -188,13 +189,15 @@ fn bands_within(
         return Err(Diagnostic::new(Code::BadAxis, "", message).hint("take fewer of either").into());
     }
     work.begin("samples", samples.len() as u64);
+    let mut trains = Default::default();
+    let nominal: Vec<_> = (0..x.len()).map(|j| plan.answer_along(None, &x, j, &mut trains)).collect();
     // What is coarse ends with its moment, where there is a clock, but has some samples.
-    let is_coarse = detail == Detail::Coarse && work.clock().is_some();
-    let began = work.clock().unwrap_or_default();
-    let parts: Vec<&[usize]> = samples.chunks(if is_coarse { 1 } else { PART }).collect();
+    let ends = began.filter(|_| detail == Detail::Coarse).map(|began| began + MEASURED);
+    let is_over = || ends.is_some_and(|ends| work.clock().is_some_and(|now| now > ends));
+    let parts: Vec<&[usize]> = samples.chunks(if ends.is_some() { 1 } else { PART }).collect();
     // One train after the other, so that each is built once.
     let part = |k: usize| -> Vec<Vec<[f64; 2]>> {
-        if is_coarse && k >= FEWEST && work.clock().unwrap_or_default() - began > MEASURED {
+        if k >= FEWEST && is_over() {
             return vec![];
         }
         let mut trains = Default::default();
@@ -204,9 +207,10 @@ fn bands_within(
     };
     let values: Vec<Vec<[f64; 2]>> = work::map(work, parts.len(), part)?.into_iter().flatten().collect();
     let samples = values.len();
-    let mut trains = Default::default();
-    let points = (0..x.len())
-        .map(|j| {
+    let points = nominal
+        .into_iter()
+        .enumerate()
+        .map(|(j, nominal)| {
             let sorted = |which: usize| {
                 let mut own: Vec<f64> = values.iter().map(|v| v[j][which]).filter(|v| v.is_finite()).collect();
                 own.sort_by(f64::total_cmp);
@@ -217,7 +221,6 @@ fn bands_within(
                 (2 * own.len() >= samples && !own.is_empty())
                     .then(|| QUANTILES.map(|p| willis::unstable::quantile(own, p)))
             };
-            let nominal = plan.answer_along(None, &x, j, &mut trains);
             let nominal = (nominal.is_unique()).then(|| [nominal.efficiency(), nominal.loss()]);
             BandPoint {
                 efficiency: told(&efficiency),
