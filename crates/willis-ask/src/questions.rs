@@ -6,7 +6,7 @@ mod calibrate;
 mod check;
 mod compare;
 mod cycle;
-#[cfg(feature = "synthesis")]
+#[cfg(feature = "design")]
 mod design;
 #[cfg(feature = "pictures")]
 mod draw;
@@ -21,12 +21,12 @@ mod losses;
 mod modes;
 mod names;
 mod new;
-#[cfg(feature = "synthesis")]
+#[cfg(any(feature = "design", feature = "schemes"))]
 mod parts;
 mod regimes;
 #[cfg(feature = "pictures")]
 mod report;
-#[cfg(feature = "synthesis")]
+#[cfg(feature = "schemes")]
 mod schemes;
 mod sensitivity;
 mod simulate;
@@ -41,7 +41,7 @@ pub use calibrate::Calibrate;
 pub use check::Check;
 pub use compare::Compare;
 pub use cycle::{Cycle, CycleAnswer};
-#[cfg(feature = "synthesis")]
+#[cfg(feature = "design")]
 pub use design::{Design, DesignFound};
 #[cfg(feature = "pictures")]
 pub use draw::{Draw, DrawAnswer, Look};
@@ -58,7 +58,7 @@ pub use new::New;
 pub use regimes::{Regimes, RegimesAnswer};
 #[cfg(feature = "pictures")]
 pub use report::Report;
-#[cfg(feature = "synthesis")]
+#[cfg(feature = "schemes")]
 pub use schemes::{HybridResult, SchemeResult, Schemes, SchemesAnswer};
 pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, MOST_KEPT, Simulate, run_text as simulation_text, tell_of_events_left_out};
@@ -90,9 +90,9 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Locate>(),
     Entry::of::<Simulate>(),
     Entry::of::<Modes>(),
-    #[cfg(feature = "synthesis")]
+    #[cfg(feature = "design")]
     Entry::of::<Design>(),
-    #[cfg(feature = "synthesis")]
+    #[cfg(feature = "schemes")]
     Entry::of::<Schemes>(),
     #[cfg(feature = "pictures")]
     Entry::of::<Draw>(),

@@ -1,7 +1,7 @@
 //! The question about shift schemes and hybrids: counts that must come out, rows as train files, parts of a search that
 //! are put together, and what is refused.
 
-#![cfg(feature = "synthesis")]
+#![cfg(feature = "schemes")]
 
 use std::fs;
 use std::path::Path;

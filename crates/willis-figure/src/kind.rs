@@ -55,7 +55,7 @@ impl Detail {
 /// points: what is seen takes some 20 ms to 50 ms.
 pub(crate) const MOMENT: f64 = 0.008;
 /// The same where the work is measured: the picture is drawn in the rest of 50 ms.
-pub(crate) const MEASURED: f64 = 0.024;
+pub(crate) const MEASURED: f64 = 0.016;
 
 /// See [`Kind::steps`].
 pub(crate) type InSteps<T> = fn(&Model, &FigureRequest, &dyn Work, Detail) -> Result<T, Diagnostics>;

@@ -51,11 +51,11 @@ pub struct ExplainedRule {
 
 /// The rules there are.
 fn rules() -> Vec<ExplainedRule> {
-    #[cfg(feature = "synthesis")]
+    #[cfg(feature = "design")]
     let all = willis_synthesis::teeth::Rule::ALL.iter();
-    #[cfg(feature = "synthesis")]
+    #[cfg(feature = "design")]
     return all.map(|r| ExplainedRule { name: r.name().into(), explanation: r.explanation().into() }).collect();
-    #[cfg(not(feature = "synthesis"))]
+    #[cfg(not(feature = "design"))]
     vec![]
 }
 

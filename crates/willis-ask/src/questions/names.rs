@@ -30,7 +30,7 @@ pub fn families() -> Vec<&'static str> {
 /// Codes of diagnostics, and rules for teeth.
 pub fn codes() -> Vec<&'static str> {
     let codes = willis::diagnostic::Code::ALL.iter().map(|c| c.as_str());
-    #[cfg(feature = "synthesis")]
+    #[cfg(feature = "design")]
     let codes = codes.chain(willis_synthesis::teeth::Rule::ALL.iter().map(|r| r.name()));
     codes.collect()
 }
