@@ -48,5 +48,5 @@ pub use report::Request;
 pub use rule::Rule;
 pub use search::{Found, Progress};
 pub use space::{Item, SetSpace};
-pub use start::{Start, StartKind};
+pub use start::{Around, Start, StartKind};
 pub use wish::{Limits, Objective, Ratio, Requirements, Step, Target};

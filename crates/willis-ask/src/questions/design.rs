@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use willis::contract::Contract;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::work::Work;
-use willis_synthesis::teeth::{self, DesignAnswer, Objective, Progress, Start, StartKind};
+use willis_synthesis::teeth::{self, Around, DesignAnswer, Objective, Progress, Start, StartKind};
 
 use super::names;
 use super::parts::{part, parts};
@@ -46,7 +46,7 @@ pub struct Design {
     /// Of --kind and --like: how far a ratio may be off, as a part. Default: 0.01.
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART", conflicts_with = "file"))]
     pub tolerance: Option<String>,
-    /// Of --kind: the largest reference diameter of a ring: 90mm.
+    /// Of --kind and --like: the largest reference diameter of a ring: 90mm.
     #[cfg_attr(feature = "clap", arg(long, value_name = "LENGTH", conflicts_with = "file"))]
     pub ring: Option<String>,
     /// Of --kind: modules that are allowed: 0.5mm,0.6mm. Default where the ring is limited: those of DIN 780 to 8 mm.
@@ -55,10 +55,10 @@ pub struct Design {
     /// Of --kind: numbers of planets. Default: 3..5.
     #[cfg_attr(feature = "clap", arg(long, value_name = "RANGE", conflicts_with = "file"))]
     pub planets: Option<String>,
-    /// Of --kind: the least efficiency from input to output.
+    /// Of --kind and --like: the least efficiency from input to output.
     #[cfg_attr(feature = "clap", arg(long, value_name = "EFFICIENCY", conflicts_with = "file"))]
     pub forward: Option<String>,
-    /// Of --kind: the least efficiency from output to input: a drive that can be driven back.
+    /// Of --kind and --like: the least efficiency from output to input: a drive that can be driven back.
     #[cfg_attr(feature = "clap", arg(long, value_name = "EFFICIENCY", conflicts_with = "file"))]
     pub backward: Option<String>,
     /// Show so many rows. Default: 20.
@@ -124,7 +124,13 @@ impl Design {
             }
             (None, None, Some(like)) => {
                 let tolerance = self.tolerance.as_deref().unwrap_or("0.01");
-                let text = Start::around(&like.text, tolerance).map_err(|w| Refusal::File(w, like.clone()))?;
+                let around = Around {
+                    ring: self.ring.clone(),
+                    forward: self.forward.clone(),
+                    backward: self.backward.clone(),
+                    ..Around::new(tolerance)
+                };
+                let text = around.to_toml(&like.text).map_err(|w| Refusal::File(w, like.clone()))?;
                 Attachment { name: format!("the design around {}", like.name), text }
             }
             (None, None, None) => {
@@ -220,11 +226,11 @@ impl Question for Design {
     type Answer = DesignFound;
 
     fn check(&self) -> Result<(), Diagnostics> {
-        let kind_only = [
-            ("ratio", self.ratio.is_some()),
+        let kind_only =
+            [("ratio", self.ratio.is_some()), ("module", !self.module.is_empty()), ("planets", self.planets.is_some())];
+        let begun = [
+            ("tolerance", self.tolerance.is_some()),
             ("ring", self.ring.is_some()),
-            ("module", !self.module.is_empty()),
-            ("planets", self.planets.is_some()),
             ("forward", self.forward.is_some()),
             ("backward", self.backward.is_some()),
         ];
@@ -235,9 +241,11 @@ impl Question for Design {
                 wrong.push(d.hint("write it into the table [design] of the file"));
             }
         }
-        if self.tolerance.is_some() && self.file.is_some() {
-            let d = Diagnostic::new(Code::Conflict, "tolerance", "`tolerance` belongs to `kind` and `like`");
-            wrong.push(d.hint("write it into the table [design] of the file"));
+        for (name, is_given) in begun {
+            if is_given && (self.file.is_some() || self.kind.is_none() && self.like.is_none()) {
+                let d = Diagnostic::new(Code::Conflict, name, format!("`{name}` belongs to `kind` and `like`"));
+                wrong.push(d.hint("write it into the table [design] of the file"));
+            }
         }
         if self.kind.is_some() && self.ratio.is_none() {
             let d = Diagnostic::new(Code::MissingKey, "ratio", "`kind` needs a ratio");

@@ -173,14 +173,45 @@ impl Start {
         }
         out
     }
+}
 
-    /// A design file around a train that exists: the same connections and ratios, with other teeth. No ring becomes larger
-    /// than it is; numbers of planets stay, or are 3 to 6 where none is given; mesh efficiencies and geometry stay too; profile shifts and centre distances
-    /// are found anew.
+/// What a train must do that shall stand where another one stands. Values are texts as in [`Start`].
+///
+/// # Example
+/// ```
+/// use willis_synthesis::teeth::{Around, Design};
+///
+/// let train = "format = 1\nname = \"p\"\nmembers = [\"s\", \"c\"]\nterminals = [\"s\", \"c\"]\n\
+///     [[set]]\nname = \"P\"\nsun = { member = \"s\", teeth = 20 }\nring = { member = \"frame\", teeth = 70 }\ncarrier = \"c\"\n";
+/// let around = Around { backward: Some("0.95".into()), ..Around::new("0.02") };
+/// assert!(Design::from_toml(&around.to_toml(train)?)?.count().trains > 10);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Around {
+    /// Relative tolerance of its ratios.
+    pub tolerance: String,
+    /// The largest reference diameter of a ring, with its unit.
+    pub ring: Option<String>,
+    /// Least efficiency from input to output.
+    pub forward: Option<String>,
+    /// Least efficiency from output to input.
+    pub backward: Option<String>,
+}
+
+impl Around {
+    /// The ratios within a tolerance, and no other wish.
+    pub fn new(tolerance: &str) -> Self {
+        Self { tolerance: tolerance.to_owned(), ring: None, forward: None, backward: None }
+    }
+
+    /// The design file: the same connections and ratios, with other teeth. No ring becomes larger
+    /// than it is; numbers of planets stay, or are 3 to 6 where none is given; mesh efficiencies and
+    /// geometry stay too; profile shifts and centre distances are found anew.
     ///
     /// # Errors
     /// It is no train, has no set whose teeth can be found, or no ratio that teeth can change.
-    pub fn around(train: &str, tolerance: &str) -> Result<String, Diagnostics> {
+    pub fn to_toml(&self, train: &str) -> Result<String, Diagnostics> {
         let model = Model::from_toml(train)?;
         let alone = willis::unstable::without_operations(model.train());
         let ratios = analyze(&alone, &Selection::default())?.ratios;
@@ -246,10 +277,20 @@ impl Start {
             return Err(d.hint("write a design file with the ratios that are wanted").into());
         }
         let mut wish = toml_edit::Table::new();
-        let tolerance = tolerance.parse::<f64>().map_or_else(|_| Value::from(tolerance), Value::from);
-        wish.insert("tolerance", toml_edit::value(tolerance));
+        let written = |v: &String| v.parse::<f64>().map_or_else(|_| Value::from(v.as_str()), Value::from);
+        wish.insert("tolerance", toml_edit::value(written(&self.tolerance)));
         wish.insert("mismatch", toml_edit::value(format!("-{0}..{0}", most.min(4))));
         wish.insert("rules", toml_edit::value(["assembly", "clearance"].into_iter().collect::<toml_edit::Array>()));
+        if let Some(ring) = &self.ring {
+            let limit: toml_edit::InlineTable = [("ring_diameter", Value::from(ring.as_str()))].into_iter().collect();
+            wish.insert("limits", toml_edit::value(limit));
+        }
+        let least = [("forward", &self.forward), ("backward", &self.backward)];
+        let least: toml_edit::InlineTable =
+            least.iter().filter_map(|(k, v)| Some((*k, written(v.as_ref()?)))).collect();
+        if !least.is_empty() {
+            wish.insert("require", toml_edit::value(least));
+        }
         wish.insert("minimize", toml_edit::value(["ring_diameter"].into_iter().collect::<toml_edit::Array>()));
         wish.insert("maximize", toml_edit::value(["forward", "backward"].into_iter().collect::<toml_edit::Array>()));
         wish.insert("target", toml_edit::value(targets));

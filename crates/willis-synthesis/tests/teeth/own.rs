@@ -3,7 +3,7 @@
 use willis::Model;
 use willis::analysis::{Selection, Verdict, analyze};
 use willis::work::Serial;
-use willis_synthesis::teeth::{Design, Objective, Request, Start, StartKind};
+use willis_synthesis::teeth::{Around, Design, Objective, Request, Start, StartKind};
 
 /// All trains of the repository, which are no part of the package.
 fn examples() -> Vec<(String, String)> {
@@ -27,7 +27,7 @@ fn every_train_is_a_row_of_the_design_around_it() {
         if Model::from_toml(&text).is_err() {
             continue;
         }
-        let around = match Start::around(&text, "0.002") {
+        let around = match Around::new("0.002").to_toml(&text) {
             Ok(around) => around,
             Err(wrong) => {
                 assert!(wrong.iter().all(|d| d.code.as_str() == "E208" && !d.hints.is_empty()), "{name}: {wrong:?}");

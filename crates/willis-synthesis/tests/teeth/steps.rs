@@ -4,13 +4,13 @@ use willis::Model;
 use willis::analysis::{Selection, analyze};
 use willis::exact::Rational;
 use willis::work::Serial;
-use willis_synthesis::teeth::{Design, Request, Start};
+use willis_synthesis::teeth::{Around, Design, Request};
 
 const FORD: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/simpson-ford-c4.toml"));
 
 /// The design around the Ford C4 with other targets.
 fn around(targets: &str) -> String {
-    let text = Start::around(FORD, "0.04").unwrap();
+    let text = Around::new("0.04").to_toml(FORD).unwrap();
     let from = text.find("target = [").unwrap();
     let to = from + text[from..].find("]\n").unwrap();
     format!("{}target = [{targets}{}", &text[..from], &text[to..])
