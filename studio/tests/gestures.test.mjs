@@ -334,6 +334,9 @@ test("wheels turn in mesh, and geometry is typed", { timeout: 120_000 }, async (
 
 test("a map: first coarse, then fine, and a limit in it", { timeout: 180_000 }, async () => {
   await open(page, "fva-planetary-stage.toml");
+  // Beside a computed efficiency stands what other laws make of it.
+  await page.waitForSelector("#laws", { timeout: 60_000 });
+  assert.match(await page.locator("#laws").innerText(), /^9\d\.\d\d to 99\.\d\d % over laws/);
   await tab("Map");
   await at_rest();
   await page.waitForSelector(".limit input");

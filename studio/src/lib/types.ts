@@ -112,6 +112,8 @@ export interface MemberReport {
 }
 
 export interface Solution {
+  /** Of an iteration over computed losses. */
+  convergence: any;
   efficiency: number | null;
   input_power_w: number;
   output_power_w: number;
