@@ -332,6 +332,34 @@ test("wheels turn in mesh, and geometry is typed", { timeout: 120_000 }, async (
   assert.deepEqual(page.faults, []);
 });
 
+test("a slash searches members, gears, views and examples", { timeout: 60_000 }, async () => {
+  await open(page, "zf-8hp70.toml");
+  const search = async (...words) => {
+    await page.evaluate(() => document.activeElement?.blur());
+    await page.keyboard.press("/");
+    await page.keyboard.type(words[0]);
+    for (const key of words.slice(1)) await page.keyboard.press(key);
+    await page.keyboard.press("Enter");
+    await page.waitForSelector(".search", { state: "detached" });
+    await shown(page);
+  };
+  await search("gear 5");
+  assert.equal((await state(page)).point.state, "5");
+  await search("s12");
+  assert.match(await page.locator("#live").textContent(), /member s12/);
+  await search("regimes");
+  assert.equal(await page.locator('[role=tab]:text-is("Regimes")').getAttribute("aria-selected"), "true");
+  await search("voltec");
+  assert.match((await state(page)).doc.name, /voltec/);
+  await page.keyboard.press("/");
+  await page.keyboard.type("nothing of that name");
+  assert.match(await page.locator(".search").innerText(), /nothing is called that/);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector(".search", { state: "detached" });
+  await page.keyboard.press("Escape");
+  assert.deepEqual(page.faults, []);
+});
+
 test("a map: first coarse, then fine, and a limit in it", { timeout: 180_000 }, async () => {
   await open(page, "fva-planetary-stage.toml");
   // Beside a computed efficiency stands what other laws make of it.

@@ -53,6 +53,8 @@ class Store {
   view = $state.raw<View | null>(null);
   boxes = $state.raw<Boxes>({ width: 700, stick: 300, lever: 260, power: [640, 280], scale: null, ...PLAIN });
   hovered = $state<string | null>(null);
+  /** The member of which everything is shown. */
+  inspected = $state<string | null>(null);
   /** Something is dragged: scales stay. */
   dragging = $state(false);
   /** What is compared with what is shown. */
