@@ -298,7 +298,7 @@ fn compare(context: &Context) -> Result<(), String> {
 }
 
 /// Builds the optimised program.
-pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli";
+pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli -p willis-py";
 
 /// What can be built before it is needed.
 pub(crate) fn builds(context: &Context) -> Vec<Command> {
