@@ -10,6 +10,7 @@ mod band;
 mod doubts;
 mod effort;
 mod heat;
+mod in_force;
 mod loads;
 mod losses;
 mod margin;
@@ -41,6 +42,7 @@ pub use crate::power_flow::{BeyondLimit, LimitedQuantity};
 pub use why::{TorqueRange, Why};
 
 pub use crate::named::Named;
+pub(crate) use in_force::in_force;
 pub(crate) use operation::Point;
 pub(crate) use unit::UnitPoint;
 pub(crate) use words::named;
@@ -966,8 +968,8 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
         let default = crate::losses::mesh_friction::Constant::DEFAULT.mu;
         let mu = train.laws.friction_coefficient.unwrap_or(default);
         all.push(format!(
-            "tooth friction is computed in operations and at the load of the table of ratios; nominal efficiencies, \
-             regimes and formulas use a coefficient of {mu}"
+            "tooth friction is computed in operations and at the load of the table of ratios; regimes and formulas hold it as it \
+             is at one such load; nominal efficiencies use a coefficient of {mu}"
         ));
         let law = train.laws.mesh_friction(train.lubrication.is_some());
         all.push(format!(

@@ -12,6 +12,7 @@
 
 pub(crate) mod arrangement;
 mod atlas;
+mod basis;
 mod cells;
 mod closed;
 mod emit;
@@ -25,12 +26,13 @@ pub(crate) mod setup;
 use crate::contract::Format;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
-use crate::train::{AS_DRAWN, FRAME, MemberId, State, Train};
+use crate::train::{AS_DRAWN, FRAME, MemberId, Operation, State, Train};
 
 use atlas::atlas;
 use setup::{Linked, Setup};
 
 pub(crate) use atlas::arrow;
+pub use basis::{EfficiencyBasis, NoBasis};
 pub(crate) use cells::efficiency_at;
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use family::{Case, Family, FamilyRange, Group, Row, family};
@@ -75,8 +77,9 @@ pub struct RegimeSelection {
 /// ```
 pub fn regimes(train: &Train, selection: &RegimeSelection) -> Result<Regimes, Diagnostics> {
     let mut states = Vec::new();
-    for Choice { state, configuration, terminals, balance } in selected(train, selection)? {
-        states.push(atlas(state, configuration, &terminals, balance));
+    for Choice { state, configuration, terminals, balance, basis } in selected(train, selection)? {
+        let own = atlas(state, configuration, &terminals, balance);
+        states.push(Atlas { efficiency_basis: basis, ..own });
     }
     // Unasked for, a train as drawn without regimes is no news when its states have some.
     if selection.state.is_none() && states.iter().any(|a: &Atlas| a.reason.is_none()) {
@@ -91,10 +94,21 @@ pub(crate) struct Choice<'t> {
     pub configuration: Configuration<'t>,
     pub terminals: Vec<MemberId>,
     pub balance: Option<[MemberId; 2]>,
+    /// Where efficiencies come from that laws compute: they are in the configuration.
+    pub basis: Option<EfficiencyBasis>,
 }
 
 /// The configurations that a selection names.
 pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Result<Vec<Choice<'t>>, Diagnostics> {
+    selected_at(train, selection, &|_| None)
+}
+
+/// The same, with the losses of a point `here` in a state, where it has one.
+fn selected_at<'t>(
+    train: &'t Train,
+    selection: &RegimeSelection,
+    here: &dyn Fn(Option<usize>) -> Option<Operation>,
+) -> Result<Vec<Choice<'t>>, Diagnostics> {
     let mut errors = Diagnostics::default();
     let mut members = |names: &[String]| {
         let mut all: Vec<MemberId> = Vec::new();
@@ -154,8 +168,13 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
             });
             let configuration =
                 Configuration::new(train, engaged, &[], &members).with_terminals_apart(&members, &members);
+            let position = state.and_then(|s| train.states.iter().position(|own| own.name == s.name));
             let state = state.map_or(AS_DRAWN.to_owned(), |s| s.name.clone());
-            Choice { state, configuration, terminals: members, balance }
+            let (configuration, basis) = match basis::basis(train, position, here(position).as_ref()) {
+                Some((efficiencies, basis)) => (configuration.with_efficiencies(efficiencies), Some(basis)),
+                None => (configuration, None),
+            };
+            Choice { state, configuration, terminals: members, balance, basis }
         })
         .collect())
 }
@@ -167,9 +186,10 @@ pub(crate) fn choice_of_two<'t>(
     selection: &RegimeSelection,
 ) -> Result<(Atlas, Setup<'t>), Result<Diagnostics, String>> {
     let mut reason = None;
-    for Choice { state, configuration, terminals, balance } in selected(train, selection).map_err(Ok)? {
+    for Choice { state, configuration, terminals, balance, basis } in selected(train, selection).map_err(Ok)? {
         let label = state.clone();
         let own = atlas(state, configuration.clone(), &terminals, balance);
+        let own = Atlas { efficiency_basis: basis, ..own };
         match &own.reason {
             Some(why) => reason = reason.or(Some(format!("{label}: {why}"))),
             None if own.base_speeds.len() == 2 && own.independent_torques == 1 => {

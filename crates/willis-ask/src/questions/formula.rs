@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::named::Named;
-use willis::regimes::{self, ClosedFormula, Derivative, Efficiencies, FormulaRequest, Ratios};
+use willis::regimes::{self, ClosedFormula, Derivative, Efficiencies, EfficiencyBasis, FormulaRequest, Ratios};
 use willis::symbolic::Notation;
 use willis::work::Work;
 
@@ -148,6 +148,9 @@ pub struct OneFormula {
     pub arguments: Vec<OneArgument>,
     /// Expressions that are positive where the formula holds, and nowhere else.
     pub conditions: Vec<OneCondition>,
+    /// Where mesh efficiencies come from whose losses laws compute; absent where all are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_basis: Option<EfficiencyBasis>,
     /// Derivatives of the efficiency, where they were asked for; the one that costs most first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub derivatives: Vec<OneDerivative>,
@@ -305,6 +308,7 @@ fn one(f: &ClosedFormula, derivatives: bool) -> OneFormula {
         conditions: conditions
             .map(|((text, ensures), (latex, _))| OneCondition { expression: Written { text, latex }, ensures })
             .collect(),
+        efficiency_basis: f.basis.clone(),
         derivatives: if derivatives { f.derivatives().into_iter().map(derivative).collect() } else { vec![] },
     }
 }

@@ -48,6 +48,7 @@ pub(crate) fn atlas(
         formulas: vec![],
         boundaries: vec![],
         assignments: vec![],
+        efficiency_basis: None,
         lossless: vec![],
         link: None,
         notes: vec![],

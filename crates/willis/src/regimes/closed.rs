@@ -11,6 +11,7 @@ use crate::symbolic::{Function, Notation, Symbol};
 use crate::train::{AS_DRAWN, MemberId, Train};
 
 use super::atlas::{arrow, atlas, drivers};
+use super::basis::EfficiencyBasis;
 use super::cells::{enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
 use super::report::RegimeReport;
@@ -131,6 +132,8 @@ pub struct ClosedFormula {
     /// More freedoms and one independent torque: regimes that hold at the same speeds and under the same torque as some
     /// regime of this formula, in this train. There the equilibrium of this formula is not the only one.
     pub beside: Vec<String>,
+    /// Where mesh efficiencies come from whose losses laws compute; `None` where all are given.
+    pub basis: Option<EfficiencyBasis>,
 }
 
 /// All formulas of a state with several freedoms: at any speeds and torques as many equilibria exist as of them hold.
@@ -400,7 +403,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
         return Err(errors);
     }
     let several = states.len() > 1;
-    for super::Choice { state, configuration: c, terminals: members, balance } in states {
+    for super::Choice { state, configuration: c, terminals: members, balance, basis } in states {
         let [input, output] = train.ends(train.states.iter().position(|s| s.name == state));
         // As drawn is left out when a shift table says how the train is used.
         let unasked = several && state == AS_DRAWN;
@@ -414,7 +417,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
             several_freedoms(&state, c, (&members, balance), (&from, &to), request)
         };
         match found {
-            Ok(list) => sheet.formulas.extend(list),
+            Ok(list) => sheet.formulas.extend(list.into_iter().map(|f| ClosedFormula { basis: basis.clone(), ..f })),
             Err(_) if unasked => {}
             Err(why) => sheet.without.push((state, why)),
         }
@@ -446,7 +449,7 @@ fn one_freedom(
     let train = c.train;
     let (from, to) = (*from, *to);
     let [a, b] = [from, to].map(|m| train.member_name(m).to_owned());
-    let c = Configuration::new(train, &c.engaged, &c.held, &[from, to]);
+    let c = Configuration::new(train, &c.engaged, &c.held, &[from, to]).with_efficiencies(c.efficiencies);
     if c.node(from).is_some() && c.node(from) == c.node(to) {
         return Err(format!("direct drive: {a} and {b} turn as one, no mesh is loaded and the efficiency is 1"));
     }
@@ -661,6 +664,7 @@ fn closed(
         names: own.names.clone(),
         together: None,
         beside: vec![],
+        basis: None,
     }
 }
 

@@ -27,8 +27,14 @@ impl FormulaSheet {
             out += prelude(notation);
         }
         let mut counted: Vec<&str> = Vec::new();
+        let mut said: Option<&str> = None;
         for f in &self.formulas {
             let heading = self.heading(&f.state);
+            if let Some(basis) = f.basis.as_ref().filter(|_| said != Some(&f.state)) {
+                let state = if notation == Notation::Text { &heading } else { &f.state };
+                out += &format!("\n{}\n", remark(notation, &format!("{state}: {basis}.")));
+                said = Some(&f.state);
+            }
             if let Some(together) = f.together.as_deref().filter(|own| !counted.contains(&own.name.as_str())) {
                 Count::new(together, notation).write(&mut out, &heading);
                 counted.push(&together.name);

@@ -15,6 +15,7 @@ use crate::exact::Rational;
 use crate::train::Train;
 
 use super::atlas::{assignment_order, atlas};
+use super::basis::EfficiencyBasis;
 use super::setup::{Linked, Setup};
 use super::{Choice, RegimeSelection, selected};
 
@@ -45,6 +46,9 @@ pub struct Family {
     pub rows: Vec<Row>,
     /// Number of regimes in all ranges.
     pub regimes: usize,
+    /// Where mesh efficiencies come from whose losses laws compute; absent where all are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_basis: Option<EfficiencyBasis>,
 }
 
 impl Contract for Family {
@@ -143,7 +147,7 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
     };
     let choices = selected(train, selection)?;
     let mut reason = "the train has no state with two degrees of freedom".to_owned();
-    for Choice { state, configuration, terminals, .. } in choices {
+    for Choice { state, configuration, terminals, basis, .. } in choices {
         let setup = match Setup::new(configuration.clone(), &terminals, Linked::Nothing) {
             Ok(setup) => setup,
             Err(why) => {
@@ -270,6 +274,7 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
             cases,
             rows,
             regimes,
+            efficiency_basis: basis,
         });
     }
     Err(refuse(reason))

@@ -373,7 +373,8 @@ impl Names {
                 let mesh = &train.meshes[m];
                 // Forward: the first gear drives.
                 let forward = (pattern[j] == Some(true)) == link.along;
-                let value = if forward { &mesh.efficiency.forward } else { &mesh.efficiency.backward };
+                let own = &setup.c.efficiencies[m];
+                let value = if forward { &own.forward } else { &own.backward };
                 // A loss given for the whole set is booked on its first mesh.
                 if *value == Rational::ONE {
                     continue;

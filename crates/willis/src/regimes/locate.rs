@@ -13,10 +13,10 @@ use crate::contract::{Contract, Format};
 use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
 use crate::symbolic::Notation;
-use crate::train::{Load, MemberId, Operation, Train};
-use crate::units::Quantity;
+use crate::train::Train;
 
 use super::atlas::{drivers, order, role};
+use super::basis::EfficiencyBasis;
 use super::cells::efficiency_at;
 use super::formula::{Efficiencies, Ratios, Shape, element_label};
 
@@ -55,6 +55,9 @@ pub struct Location {
     pub reason: Option<String>,
     /// The equilibria; more than one where friction leaves a choice.
     pub regimes: Vec<Located>,
+    /// Where mesh efficiencies come from whose losses laws compute: this point, where it has exactly one equilibrium.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_basis: Option<EfficiencyBasis>,
 }
 
 impl Contract for Location {
@@ -125,7 +128,8 @@ pub struct Located {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagnostics> {
-    let (given, choice) = request::read(train, request)?;
+    let (given, mut choice) = request::read(train, request)?;
+    let efficiency_basis = choice.basis.take();
     let point = Point::new(train, choice, &given)?;
     let Equilibria { states, complete, reason } = equilibria(&point.setup, &point.base, &point.loads);
     let around = Surroundings::of(&point);
@@ -144,20 +148,13 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         complete,
         reason: reason.or(around.cells.err()),
         regimes,
+        efficiency_basis,
     })
 }
 
 /// What friction at rest leaves open in each equilibrium: as the analysis of the point says, where it makes one of it.
 fn friction_at_rest(train: &Train, point: &Point<'_>, given: &Given, regimes: &mut [Located]) {
-    let load = |(m, q): &(MemberId, Quantity), load: fn(Quantity) -> Load| (*m, load(q.clone()));
-    let torques = given.torques.iter().map(|x| load(x, Load::Torque));
-    let operation = Operation {
-        state: train.states().iter().position(|s| s.name == point.state),
-        speeds: given.speeds.clone(),
-        fixed: given.held.clone(),
-        loads: torques.chain(given.powers.iter().map(|x| load(x, Load::Power))).collect(),
-        ..Operation::new("here")
-    };
+    let operation = given.operation(train.states().iter().position(|s| s.name == point.state));
     let Ok((report, _)) = operate_unnamed(train, &operation) else { return };
     for regime in regimes {
         let alike = |s: &&SolutionReport| {

@@ -6,6 +6,7 @@ use crate::analysis::{Named, Role};
 use crate::contract::{Contract, Format};
 use crate::exact::Rational;
 
+use super::basis::EfficiencyBasis;
 use super::setup::Pattern;
 
 /// All regimes of a train.
@@ -58,6 +59,9 @@ pub struct Atlas {
     pub boundaries: Vec<BoundaryReport>,
     /// Every assignment of inputs and outputs, and whether it can be reached.
     pub assignments: Vec<AssignmentReport>,
+    /// Where mesh efficiencies come from whose losses laws compute; absent where all are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_basis: Option<EfficiencyBasis>,
     /// Elements without loss: it does not matter who drives them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lossless: Vec<String>,

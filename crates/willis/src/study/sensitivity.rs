@@ -113,6 +113,8 @@ pub struct Checks {
 pub enum StepKind {
     /// One percent of it.
     Percent,
+    /// One percent less: efficiencies of which one percent more would pass 1.
+    PercentLess,
     /// One kelvin.
     Kelvin,
     /// One degree.
@@ -132,6 +134,7 @@ impl StepKind {
     pub fn label(self) -> &'static str {
         match self {
             Self::Percent => "+1 %",
+            Self::PercentLess => "−1 %",
             Self::Kelvin => "+1 K",
             Self::Degree => "+1°",
             Self::Hundredth => "+0.01",
@@ -145,6 +148,7 @@ impl StepKind {
     pub fn size(self) -> &'static str {
         match self {
             Self::Percent => "1 %",
+            Self::PercentLess => "−1 %",
             Self::Kelvin => "1 K",
             Self::Degree => "1°",
             Self::Hundredth => "0.01",
@@ -174,7 +178,7 @@ pub struct QuantitySensitivity {
     pub together: Vec<String>,
     /// The step for which changes are told.
     pub step: StepKind,
-    /// That step, SI.
+    /// That step, SI; negative where it is one to less.
     pub step_size: f64,
     /// `dη/dq`, over the SI unit of the value.
     pub efficiency_derivative: Option<f64>,
@@ -226,6 +230,12 @@ struct Quantity {
 }
 
 impl Quantity {
+    /// Whether it cannot pass 1.
+    fn is_efficiency(&self) -> bool {
+        let cannot = |s: &Slot| matches!(s, Slot::Efficiency(..) | Slot::Variator(..) | Slot::Machine(..));
+        self.slots.iter().any(|(s, _)| cannot(s))
+    }
+
     fn step(&self) -> (StepKind, f64) {
         let shift = self.slots.iter().any(|(s, _)| matches!(s, Slot::Shift(..)));
         // Lengths that others of the same teeth fix: a percent of them is no gear any more.
@@ -239,6 +249,7 @@ impl Quantity {
             "m" if self.value == 0.0 || fitted => (StepKind::TenthMillimetre, 1e-4),
             "-" if self.value == 0.0 => (StepKind::Hundredth, 0.01),
             _ if self.value == 0.0 => (StepKind::Unit, 1.0),
+            _ if self.is_efficiency() && 1.01 * self.value > 1.0 => (StepKind::PercentLess, -0.01 * self.value),
             _ => (StepKind::Percent, 0.01 * self.value),
         }
     }
@@ -495,7 +506,8 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
         loss_change_w: loss.eps * step_size,
         oil_derivative: None,
         oil_change_k: None,
-        loss_elasticity: (step == StepKind::Percent && loss.re > 0.0).then(|| loss.eps * quantity.value / loss.re),
+        loss_elasticity: (matches!(step, StepKind::Percent | StepKind::PercentLess) && loss.re > 0.0)
+            .then(|| loss.eps * quantity.value / loss.re),
         sources,
     })
 }

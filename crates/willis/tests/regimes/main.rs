@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod at_load;
 mod atlas;
 mod emitted;
 mod limits;

@@ -3,11 +3,11 @@
 
 use proptest::prelude::*;
 
-use willis::study::{OperationSensitivity, QuantitySensitivity, Sensitivity, sensitivity};
+use willis::study::{OperationSensitivity, QuantitySensitivity, Sensitivity, StepKind, sensitivity};
 use willis::train::Document;
 use willis::{Selection, Train, analyze};
 
-use crate::common::example;
+use crate::common::{example, examples};
 
 fn all_of(text: &str) -> Sensitivity {
     let train = Train::from_toml(text).unwrap_or_else(|wrong| panic!("{wrong}"));
@@ -153,7 +153,7 @@ fn val_nrel_stage_by_differences() {
 }
 
 /// Every step that is told can be taken: with what moves along, the file is still that of a train. Not of efficiencies, whose
-/// step may lead past one, and of profile shifts without a centre distance, which other gears of the set must share.
+/// step back may lead past one, and of profile shifts without a centre distance, which other gears of the set must share.
 #[test]
 fn every_step_can_be_taken() {
     let (mut steps, mut along) = (0, 0);
@@ -510,4 +510,23 @@ fn bearings_that_carry_the_same_have_derivatives_of_their_own() {
         let difference = (loss(mm + 0.1) - loss(mm - 0.1)) / 0.2e-3;
         assert!((derivative - difference).abs() < 0.02 * difference.abs() + 0.1, "{mm}: {derivative} {difference}");
     }
+}
+
+#[test]
+fn no_step_of_an_efficiency_passes_one() {
+    let mut less = 0;
+    for (name, text) in examples() {
+        let train = Train::from_toml(&text).unwrap();
+        let Ok(all) = sensitivity(&train, &Selection::default()) else { continue };
+        for q in all.operations.iter().flat_map(|o| &o.quantities).filter(|q| q.name.contains("efficiency")) {
+            assert!(q.value + q.step_size <= 1.0, "{name}, {}: {} by {}", q.name, q.value, q.step_size);
+            // One percent to the side that is possible, and the change goes with it.
+            assert!((q.step_size.abs() / q.value - 0.01).abs() < 1e-12);
+            assert!((q.loss_change_w - q.loss_derivative_w * q.step_size).abs() <= 1e-12 * q.loss_change_w.abs());
+            assert_eq!(q.step == StepKind::PercentLess, 1.01 * q.value > 1.0, "{name}, {}", q.name);
+            assert_eq!(q.step.label() == "−1 %", q.step_size < 0.0);
+            less += usize::from(q.step == StepKind::PercentLess);
+        }
+    }
+    assert!(less > 10, "{less}");
 }

@@ -28,6 +28,10 @@ pub fn location(l: &Location) -> String {
         out += &wrap(why, "  note       ");
         out += "\n";
     }
+    if let Some(basis) = &l.efficiency_basis {
+        out += &wrap(&basis.to_string(), "  losses     ");
+        out += "\n";
+    }
     if l.regimes.len() > 1 {
         out += &format!("  {} equilibria carry this load\n", l.regimes.len());
     }

@@ -10,6 +10,9 @@ pub fn latex(all: &Regimes) -> String {
             out += &format!("% {}: {why}\n", a.state);
             continue;
         }
+        if let Some(basis) = &a.efficiency_basis {
+            out += &format!("% {}: {basis}.\n", a.state);
+        }
         // Columns that break their lines, for trains with many terminals.
         let column = |width: &str| format!(">{{\\raggedright\\arraybackslash}}p{{{width}\\linewidth}}");
         let (speeds, torques, roles) = (column("0.34"), column("0.21"), column("0.2"));

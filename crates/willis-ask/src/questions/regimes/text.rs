@@ -20,6 +20,19 @@ pub fn text(all: &Regimes) -> String {
     out
 }
 
+/// Where the efficiencies of meshes come from that laws compute: a line for all states of which the same is said.
+fn efficiency_bases(all: &[&Atlas]) -> String {
+    let mut told: Vec<(String, Vec<&str>)> = Vec::new();
+    for a in all {
+        let Some(words) = a.efficiency_basis.as_ref().map(ToString::to_string) else { continue };
+        match told.iter_mut().find(|(own, _)| *own == words) {
+            Some((_, states)) => states.push(&a.state),
+            None => told.push((words, vec![&a.state])),
+        }
+    }
+    told.into_iter().map(|(words, states)| wrap(&format!("{}: {words}", states.join(", ")), "  ") + "\n").collect()
+}
+
 /// States with one degree of freedom: a line for each way the power can go.
 fn one_freedom(all: &[&Atlas]) -> String {
     let mut out = bold("One degree of freedom") + "\n";
@@ -62,6 +75,7 @@ fn one_freedom(all: &[&Atlas]) -> String {
             out += "\n";
         }
     }
+    out += &efficiency_bases(all);
     out += &dim("the same with all speeds and torques reversed; `willis formula` gives conditions, ratios and code");
     out += "\n\n";
     out += &bold("Symbols");
@@ -322,9 +336,11 @@ fn atlas(a: &Atlas) -> String {
         }
         out += "  T_x torque on x, w_x speed of x, L power lost\n";
     }
-    if !a.notes.is_empty() {
+    let basis = a.efficiency_basis.as_ref().map(ToString::to_string);
+    let notes: Vec<&String> = a.notes.iter().chain(&basis).collect();
+    if !notes.is_empty() {
         out += "\n";
-        for note in &a.notes {
+        for note in notes {
             out += &wrap(note, "  · ");
             out += "\n";
         }
@@ -345,6 +361,10 @@ pub fn family(f: &Family) -> String {
         )
     };
     out += &format!("  {etas} seen from {}\n", f.carrier);
+    if let Some(basis) = &f.efficiency_basis {
+        out += &wrap(&basis.to_string(), "  ");
+        out += "\n";
+    }
     out += &format!(
         "  {} regimes in {} ranges of R; one line holds a regime and its mirror image\n",
         f.regimes,

@@ -41,11 +41,12 @@ impl<'t> Point<'t> {
     /// # Errors
     /// Speeds that contradict each other; too few or too many speeds or torques.
     pub fn new(train: &'t Train, choice: Choice<'t>, given: &Given) -> Result<Self, Diagnostics> {
-        let Choice { state, configuration, terminals, balance } = choice;
+        let Choice { state, configuration, terminals, balance, basis: _ } = choice;
         // Planets whose speed is given stay visible.
         let keep: Vec<MemberId> = terminals.iter().copied().chain(given.speeds.iter().map(|(m, _)| *m)).collect();
         let c = Configuration::new(train, &configuration.engaged, &given.held, &keep)
-            .with_terminals_apart(&terminals, &keep);
+            .with_terminals_apart(&terminals, &keep)
+            .with_efficiencies(configuration.efficiencies);
         let motion = c.motion(&given.speeds).map_err(|broken| contradictory(&c, &broken))?;
         let setup = Setup::new(c, &terminals, Linked::of(balance))
             .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other `terminals`"))?;

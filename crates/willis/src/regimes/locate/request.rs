@@ -1,8 +1,8 @@
 //! What is asked: an operating point by names, and what they stand for in the train.
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::regimes::{Choice, RegimeSelection, selected};
-use crate::train::{AS_DRAWN, Load, MemberId, Train};
+use crate::regimes::{Choice, RegimeSelection, selected_at};
+use crate::train::{AS_DRAWN, Load, MemberId, Operation, Train};
 use crate::units::Quantity;
 
 /// An operating point to place.
@@ -32,6 +32,24 @@ pub(super) struct Given {
     pub powers: Vec<(MemberId, Quantity)>,
     /// Members held from outside.
     pub held: Vec<MemberId>,
+    /// Oil temperature of the operation, K, where it has one of its own.
+    pub temperature: Option<f64>,
+}
+
+impl Given {
+    /// The same as an operating point of a state, nameless.
+    pub fn operation(&self, state: Option<usize>) -> Operation {
+        let load = |(m, q): &(MemberId, Quantity), load: fn(Quantity) -> Load| (*m, load(q.clone()));
+        let torques = self.torques.iter().map(|x| load(x, Load::Torque));
+        Operation {
+            state,
+            speeds: self.speeds.clone(),
+            fixed: self.held.clone(),
+            loads: torques.chain(self.powers.iter().map(|x| load(x, Load::Power))).collect(),
+            temperature: self.temperature,
+            ..Operation::new("")
+        }
+    }
 }
 
 /// What a request and its operation prescribe, and the configuration that they name.
@@ -61,7 +79,7 @@ pub(super) fn read<'t>(train: &'t Train, request: &LocateRequest) -> Result<(Giv
         terminals: request.terminals.clone(),
         balance: request.balance.clone(),
     };
-    let choice = match selected(train, &selection) {
+    let choice = match selected_at(train, &selection, &|state| Some(given.operation(state))) {
         Ok(mut all) => all.pop(),
         Err(wrong) => {
             errors.extend(wrong);
@@ -85,6 +103,7 @@ fn operation(train: &Train, name: &str, given: &mut Given, errors: &mut Diagnost
     };
     given.speeds.extend(o.speeds.iter().cloned());
     given.held.extend(&o.fixed);
+    given.temperature = o.temperature;
     for (m, load) in &o.loads {
         match load {
             Load::Torque(q) => given.torques.push((*m, q.clone())),
