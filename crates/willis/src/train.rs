@@ -47,7 +47,7 @@ pub(crate) use physical::OpenNumber;
 pub(crate) use physical::steel_mass;
 pub use physical::{
     BearingMount, Housing, Jet, LossFactors, LossPart, Lubrication, OpenElement, PlanetBody, Pump, Rotor, SealMount,
-    Teeth,
+    Teeth, TipRelief,
 };
 pub use reading::Reading;
 pub use schema::schema;

@@ -1,6 +1,7 @@
 //! Mean stiffness of a mesh.
 
 use super::Pair;
+use crate::real::Real;
 
 /// Young's modulus for which the formula's constants hold, Pa.
 const STEEL: f64 = 206e9;
@@ -52,27 +53,7 @@ impl Pair {
     /// assert!((single / 12.6926e9 - 1.0).abs() < 1e-4);
     /// ```
     pub fn mesh_stiffness(&self, youngs_modulus: f64) -> f64 {
-        let cos_helix = self.data.helix.cos();
-        let virtual_teeth = self.base_helix.cos().powi(2) * cos_helix;
-        // Over 1/z_n and x, a ring in the sense of the standard, which counts outwards from the axis as positive.
-        let mut wheels = self.data.wheels.each_ref().map(|w| match w.internal {
-            true => (0.0, -w.shift),
-            false => (virtual_teeth / w.teeth, w.shift),
-        });
-        if wheels[0].0 == 0.0 || (wheels[1].0 > 0.0 && wheels[0].1 < wheels[1].1) {
-            wheels.swap(0, 1);
-        }
-        let [(n1, x1), (n2, x2)] = wheels;
-        let flexibility =
-            0.04723 + 0.15551 * n1 + 0.25791 * n2 - 0.00635 * x1 - 0.11654 * x1 * n1 - 0.00193 * x2 - 0.24188 * x2 * n2
-                + 0.00529 * x1 * x1
-                + 0.00182 * x2 * x2;
-        let rack = |dedendum: f64| {
-            (1.0 + 0.5 * (1.2 - dedendum)) * (1.0 - 0.02 * (20.0 - self.data.pressure_angle.to_degrees()))
-        };
-        let racks = 0.5 * (rack(self.data.wheels[0].dedendum) + rack(self.data.wheels[1].dedendum));
-        let single = 0.8 * racks * cos_helix / flexibility * youngs_modulus / STEEL;
-        1e9 * single * (0.75 * self.contact_ratio + 0.25)
+        self.pair_stiffness(youngs_modulus) * (0.75 * self.contact_ratio + 0.25)
     }
 
     /// In which ways the pair lies outside of what [`Pair::mesh_stiffness`] has data for, in words.
@@ -87,5 +68,34 @@ impl Pair {
             return Some(format!("a helix angle of {helix:.1}°; its data reach to 45°"));
         }
         (self.contact_ratio < 1.0).then(|| format!("a contact ratio of {:.3}; its data begin at 1", self.contact_ratio))
+    }
+}
+
+impl<R: Real> Pair<R> {
+    /// Stiffness of one tooth pair where it is stiffest, over its face width, `c'`, N/m for each m of width: that of
+    /// [`Pair::mesh_stiffness`] before the mean over the mesh is taken.
+    ///
+    /// # Source
+    /// ISO 6336-1:2019, method B: equations (82) to (91) and the section on internal gearing.
+    pub fn pair_stiffness(&self, youngs_modulus: R) -> R {
+        let cos_helix = self.data.helix.cos();
+        let virtual_teeth = self.base_helix.cos().powi(2) * cos_helix;
+        // Over 1/z_n and x, a ring in the sense of the standard, which counts outwards from the axis as positive.
+        let mut wheels = self.data.wheels.each_ref().map(|w| match w.internal {
+            true => (R::from(0.0), -w.shift),
+            false => (virtual_teeth / w.teeth, w.shift),
+        });
+        if wheels[0].0.re() == 0.0 || (wheels[1].0.re() > 0.0 && wheels[0].1.re() < wheels[1].1.re()) {
+            wheels.swap(0, 1);
+        }
+        let [(n1, x1), (n2, x2)] = wheels;
+        let flexibility =
+            n1 * 0.15551 + 0.04723 + n2 * 0.25791 - x1 * 0.00635 - x1 * 0.11654 * n1 - x2 * 0.00193 - x2 * 0.24188 * n2
+                + x1 * 0.00529 * x1
+                + x2 * 0.00182 * x2;
+        let degrees = self.data.pressure_angle * (180.0 / std::f64::consts::PI);
+        let rack = |dedendum: R| ((-dedendum + 1.2) * 0.5 + 1.0) * (-((-degrees + 20.0) * 0.02) + 1.0);
+        let racks = (rack(self.data.wheels[0].dedendum) + rack(self.data.wheels[1].dedendum)) * 0.5;
+        racks * 0.8 * cos_helix / flexibility * youngs_modulus / STEEL * 1e9
     }
 }

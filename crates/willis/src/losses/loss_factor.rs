@@ -4,6 +4,7 @@
 //! force: `F_bt v_bt`) and one mean coefficient of friction μ.
 
 use crate::geometry::Pair;
+use crate::losses::load_sharing::Relief;
 
 /// Path of contact of a pair.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,8 @@ pub struct Path<D> {
     pub e: [D; 2],
     /// Overlap ratio `ε_β` of one helix, 0 for spur gears.
     pub overlap_ratio: D,
+    /// Tip relief of both gears under the load.
+    pub relief: Relief<D>,
 }
 
 family! {
@@ -57,7 +60,7 @@ impl<D: crate::Real> Path<D> {
 }
 
 impl<D: crate::Real> Path<D> {
-    /// The path of a pair of gears.
+    /// The path of a pair of gears without tip relief.
     ///
     /// # Example
     /// ```
@@ -87,6 +90,7 @@ impl<D: crate::Real> Path<D> {
             operating_helix: pair.operating_helix,
             e: pair.addendum_contact_ratios,
             overlap_ratio: pair.overlap_ratio,
+            relief: Relief::none(),
         }
     }
 }
@@ -101,6 +105,7 @@ impl Path<f64> {
             operating_helix: 0.0,
             e: [0.7574, 0.790348],
             overlap_ratio: 0.0,
+            relief: Relief::none(),
         }
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::Pair;
 use crate::losses::film::FilmContact;
 use crate::losses::film_reduction::Inlet;
-use crate::losses::load_sharing::ToothLoad;
+use crate::losses::load_sharing::{Relief, ToothLoad};
 use crate::losses::loss_factor::Path;
 use crate::losses::mesh_friction::{MeshContact, MeshFriction};
 use crate::losses::rolling::RollingContact;
@@ -181,7 +181,9 @@ pub(super) struct Tooth<R> {
 /// A place of the path of contact: what follows from the geometry alone.
 #[derive(Clone, Copy, Debug)]
 struct Place<R> {
-    /// Part of the load of the mesh that a tooth pair carries here.
+    /// From A, in base pitches.
+    position: R,
+    /// Part of the load of the mesh that a tooth pair carries here, without tip relief.
     share: R,
     /// Reduced radius of curvature, m.
     radius: R,
@@ -216,6 +218,8 @@ struct Loaded<'a, R: Real> {
     pitch_line_speed: R,
     /// Speed of the first gear relative to the carrier, ≥ 0, rad/s.
     speed: R,
+    /// Tip relief under this load.
+    relief: Relief<R>,
 }
 
 impl<R: Real> Loaded<'_, R> {
@@ -230,7 +234,11 @@ impl<R: Real> Loaded<'_, R> {
 
     fn at(&self, place: &Place<R>) -> Point<R> {
         let pair = &self.teeth.pair;
-        let line_load = place.share * self.normal_force * pair.cos_base_helix() / pair.total_width();
+        let share = match self.relief.any() {
+            true => self.physics.tooth_share(pair, place.position, self.relief),
+            false => place.share,
+        };
+        let line_load = share * self.normal_force * pair.cos_base_helix() / pair.total_width();
         let radius = place.radius;
         let [sliding, sum] = [place.sliding, place.sum].map(|per_speed| per_speed * self.speed);
         let modulus = self.teeth.reduced_modulus();
@@ -242,6 +250,19 @@ impl<R: Real> Loaded<'_, R> {
             .as_ref()
             .map_or(none, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
         Point { line_load, sliding, sum, radius, pressure, film }
+    }
+
+    /// The loss factor under this load.
+    fn loss_factor(&self, fixed: &Fixed<R>) -> R {
+        match self.relief.any() {
+            true => self.physics.train.laws.loss_factor(&self.physics.friction).eval(&self.path()),
+            false => fixed.loss_factor,
+        }
+    }
+
+    /// The path of contact with the relief under this load.
+    fn path(&self) -> Path<R> {
+        Path { relief: self.relief, ..Path::of(&self.teeth.pair) }
     }
 
     fn inlet(&self, oil: &OilState<R>, sliding: R, sum: R, pressure: R) -> Inlet<R> {
@@ -292,21 +313,29 @@ impl<R: Real> Loaded<'_, R> {
     }
 }
 
-/// Where a tooth pair more or less is in contact: whole base pitches from both ends, and C.
-fn breaks<R: Real>(pair: &Pair<R>) -> [R; 2 * MOST_PAIRS + 1] {
+/// Places between which loads and speeds are smooth: C, whole base pitches from both ends, and those from where tip relief
+/// ends.
+type Breaks<R> = [R; 4 * MOST_PAIRS + 1];
+
+fn breaks<R: Real>(teeth: &Teeth<R>) -> Breaks<R> {
+    let pair = &teeth.pair;
     let [start, end] = pair.path();
-    let mut breaks = [R::from(0.0); 2 * MOST_PAIRS + 1];
+    let mut breaks = [R::from(0.0); 4 * MOST_PAIRS + 1];
+    let lengths = teeth.relief.map_or([R::from(0.0); 2], |relief| relief.length);
     for k in 0..MOST_PAIRS {
         breaks[2 * k] = real::min(pair.base_pitch * k as f64 + start, end);
         breaks[2 * k + 1] = real::max(-(pair.base_pitch * k as f64) + end, start);
+        let [first, second] = lengths.map(|l| pair.base_pitch * k as f64 + l);
+        breaks[2 * (MOST_PAIRS + k) + 1] = real::min(second + start, end);
+        breaks[2 * (MOST_PAIRS + k) + 2] = real::max(-first + end, start);
     }
     breaks.sort_by(|a, b| a.re().total_cmp(&b.re()));
     breaks
 }
 
 /// The parts of the path of contact between those, within its ends.
-fn parts<R: Real>(pair: &Pair<R>) -> impl Iterator<Item = [R; 2]> {
-    let ([start, end], breaks) = (pair.path(), breaks(pair));
+fn parts<R: Real>(teeth: &Teeth<R>) -> impl Iterator<Item = [R; 2]> {
+    let ([start, end], breaks) = (teeth.pair.path(), breaks(teeth));
     (0..breaks.len() - 1).map(move |k| [real::max(breaks[k], start), real::min(breaks[k + 1], end)])
 }
 
@@ -340,6 +369,7 @@ impl<R: Real> Physics<'_, R> {
             normal_force: base_force / pair.cos_base_helix(),
             pitch_line_speed: real::abs(flow.relative_speeds[driver]) * pair.gears[driver].operating_radius,
             speed: real::abs(flow.relative_speeds[0]),
+            relief: teeth.relief(base_force),
         }
     }
 
@@ -356,25 +386,28 @@ impl<R: Real> Physics<'_, R> {
             let pitch = real::min(real::max(none, start), end);
             let both = gauss(start, pitch).chain(gauss(pitch, end)).map(|(s, w)| (s, w / (end - start)));
             let inside = |[from, to]: [R; 2]| [from + (to - from) * 1e-9, to - (to - from) * 1e-9];
-            let ends = parts(pair).filter(|[from, to]| to.re() > from.re()).flat_map(inside);
+            let ends = parts(teeth).filter(|[from, to]| to.re() > from.re()).flat_map(inside);
             Fixed {
                 loss_factor: self.train.laws.loss_factor(&self.friction).eval(&Path::of(pair)),
                 pitch: self.place(pair, none),
-                friction: parts(pair).flat_map(|[from, to]| gauss(from, to)).map(place).filter(|_| local).collect(),
+                friction: parts(teeth).flat_map(|[from, to]| gauss(from, to)).map(place).filter(|_| local).collect(),
                 rolling: both.map(place).filter(|_| self.rolling.is_some()).collect(),
                 ends: ends.map(|s| self.place(pair, s)).collect(),
             }
         })
     }
 
+    /// The share of a tooth pair in the load of its mesh.
+    fn tooth_share(&self, pair: &Pair<R>, position: R, relief: Relief<R>) -> R {
+        let (contact_ratio, overlap_ratio) = (pair.contact_ratio, pair.overlap_ratio);
+        self.train.laws.load_sharing.eval(&ToothLoad { position, contact_ratio, overlap_ratio, relief })
+    }
+
     fn place(&self, pair: &Pair<R>, s: R) -> Place<R> {
-        let place = ToothLoad {
-            position: pair.position(s),
-            contact_ratio: pair.contact_ratio,
-            overlap_ratio: pair.overlap_ratio,
-        };
+        let position = pair.position(s);
         Place {
-            share: self.train.laws.load_sharing.eval(&place),
+            position,
+            share: self.tooth_share(pair, position, Relief::none()),
             radius: real::max(pair.reduced_radius(s), R::from(1e-9)),
             sliding: pair.sliding_per_speed(s),
             sum: pair.sum_speed_per_speed(s),
@@ -384,8 +417,8 @@ impl<R: Real> Physics<'_, R> {
     /// Friction and rolling loss of a mesh.
     pub(super) fn tooth(&self, mesh: &Mesh, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> Tooth<R> {
         let fixed = self.fixed(teeth, flow);
-        let loss_factor = fixed.loss_factor;
         let loaded = self.loaded(mesh, teeth, flow);
+        let loss_factor = loaded.loss_factor(fixed);
         let none = R::from(0.0);
         let mut tooth = Tooth { friction: None, loss_factor, rolling: none };
         if !loaded.works() || !mesh.computed {
@@ -503,7 +536,7 @@ impl Physics<'_> {
         if !loaded.works() {
             return None;
         }
-        let loss_factor = self.fixed(teeth, flow).loss_factor;
+        let loss_factor = loaded.loss_factor(self.fixed(teeth, flow));
         let hardest = self.loaded_by(mesh.sharing(), mesh, teeth, flow);
         let local = self.friction.meta().tags.contains(&Tag::Local);
         let mean = self.tooth(mesh, teeth, flow).friction;
@@ -535,7 +568,7 @@ impl Physics<'_> {
         };
         let [start, end] = pair.path();
         let (mut stations, mut work) = (Vec::new(), 0.0);
-        for [from, to] in parts(pair) {
+        for [from, to] in parts(teeth) {
             if to - from <= 1e-9 * (end - start) {
                 continue;
             }
@@ -558,10 +591,9 @@ impl Physics<'_> {
     ) -> ContactReport {
         let pair = &teeth.pair;
         let laws = &self.train.laws;
-        let path = Path::of(pair);
         let fixed = self.fixed(teeth, flow);
-        let loss_factor = fixed.loss_factor;
         let loaded = self.loaded(mesh, teeth, flow);
+        let loss_factor = loaded.loss_factor(fixed);
         let driver = flow.driver.unwrap_or(0);
         let pitch = loaded.at(&fixed.pitch);
         let hardest = self.loaded_by(mesh.sharing(), mesh, teeth, flow);
@@ -610,11 +642,12 @@ impl Physics<'_> {
         };
         if mesh.computed && beyond.is_some() {
             let factor = laws.loss_factor(&self.friction);
-            note(beyond, "loss_factor", factor.meta().id, factor.outside(&path));
+            note(beyond, "loss_factor", factor.meta().id, factor.outside(&loaded.path()));
             let place = ToothLoad {
                 position: pair.position(0.0),
                 contact_ratio: pair.contact_ratio,
                 overlap_ratio: pair.overlap_ratio,
+                relief: loaded.relief,
             };
             note(beyond, "load_sharing", laws.load_sharing.meta().id, laws.load_sharing.outside(&place));
         }

@@ -58,6 +58,8 @@ pub(crate) enum Slot {
     Dedendum(usize, usize),
     Roughness(usize, usize),
     Immersion(usize, usize),
+    /// Amount of a tip relief (`true`), or its length.
+    TipRelief(usize, usize, bool),
     Temperature,
     Viscosity40,
     Viscosity100,
@@ -403,6 +405,13 @@ impl List<'_> {
             }
             if let Some(depth) = t.immersion {
                 self.add(format!("{gear}.immersion"), depth, "m", false, Slot::Immersion(j, k));
+            }
+            for (key, value, amount) in
+                [("tip_relief", t.tip_relief, true), ("tip_relief_length", t.tip_relief_length, false)]
+            {
+                if let Some(value) = value {
+                    self.add(format!("{gear}.{key}"), value, "m", false, Slot::TipRelief(j, k, amount));
+                }
             }
         }
     }

@@ -3,6 +3,7 @@
 use crate::catalogue::bearing::Bearing;
 use crate::catalogue::oil::{Oil, Viscosity};
 use crate::geometry::Pair;
+use crate::losses::load_sharing::Relief;
 use crate::losses::seal::Material;
 use crate::real::{self, Real};
 
@@ -35,12 +36,41 @@ pub struct Teeth<R = f64> {
     pub stiffness: Option<f64>,
     /// Whether it may follow from the teeth, by ISO 6336-1.
     pub stiffness_by_standard: bool,
+    /// Tip relief of the gears; none where neither has any.
+    pub relief: Option<TipRelief<R>>,
+}
+
+/// Linear tip relief of both gears of a mesh, in the order of the mesh's gears; zeros where one has none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TipRelief<R = f64> {
+    /// Amount at the tip `C_a`, m.
+    pub amount: [R; 2],
+    /// Length along the path of contact, from the tip, m.
+    pub length: [R; 2],
+    /// Mean stiffness of the mesh over its width `c_γ` where it is given, N/m for each m; by ISO 6336-1 where it is not.
+    pub stiffness: Option<f64>,
 }
 
 impl<R: Real> Teeth<R> {
     /// Reduced modulus `E' = E/(1 − ν²)` of two equal materials, Pa.
     pub fn reduced_modulus(&self) -> R {
         self.youngs_modulus / (-(self.poisson_ratio * self.poisson_ratio) + 1.0)
+    }
+
+    /// The tip relief under a force at the base circles, N.
+    pub(crate) fn relief(&self, base_force: R) -> Relief<R> {
+        let Some(relief) = self.relief.filter(|_| base_force.re() > 0.0) else { return Relief::none() };
+        let pair = &self.pair;
+        let stiffness = match relief.stiffness {
+            Some(mean) => R::from(mean) / (pair.contact_ratio * 0.75 + 0.25),
+            None => pair.pair_stiffness(self.youngs_modulus),
+        };
+        let width = pair.total_width();
+        // Beyond the bound all contact is single to one part in a million, and the difference of two depths is lost.
+        let depth = |k: usize| real::min(relief.amount[k] * stiffness * width / base_force, R::from(1e6));
+        let length = |k: usize| relief.length[k] / pair.base_pitch;
+        // The tip of the second gear enters at A, that of the first leaves at E.
+        Relief { depth: [depth(1), depth(0)], length: [length(1), length(0)] }
     }
 
     /// Hand of the helix of one of the two gears: 1 right, -1 left.

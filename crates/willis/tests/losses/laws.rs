@@ -10,7 +10,7 @@ use willis::losses::bearing::{BearingDuty, BearingTorque, Supply};
 use willis::losses::churning::{Churning, Dip};
 use willis::losses::film::{DowsonHigginson, DowsonHigginson1966, Film, FilmContact};
 use willis::losses::film_reduction::{FilmReduction, GuptaCheng, Inlet, MurchWilson};
-use willis::losses::load_sharing::{LoadSharing, ToothLoad};
+use willis::losses::load_sharing::{LoadSharing, Relief, ToothLoad};
 use willis::losses::loss_factor::{LossFactor, Path};
 use willis::losses::mesh_friction::{Agma6011, Agma6011PerPlanet, Law as _, MeshContact, MeshFriction};
 use willis::losses::mesh_friction::{BenedictKelley, Fernandes, Matsumoto, Niemann, Schlenk, XuKahraman};
@@ -278,6 +278,7 @@ fn every_loss_factor_is_documented_finite_and_has_its_derivative() {
             operating_helix: Dual64::from(path.operating_helix),
             e: [Dual64::new(path.e[0], 1.0), Dual64::from(path.e[1])],
             overlap_ratio: Dual64::from(path.overlap_ratio),
+            relief: Relief::none(),
         };
         let difference = (at(path.e[0] + 1e-6) - at(path.e[0] - 1e-6)) / 2e-6;
         let exact = law.eval(&dual).eps;

@@ -1017,3 +1017,82 @@ fn teeth_that_are_not_computed_are_refused() {
         assert!(wrong.iter().any(|d| d.code == Code::Conflict), "{extra}: {wrong}");
     }
 }
+
+/// A pair with relieved tips at a load.
+fn relieved(torque: f64, tips: [&str; 2], geometry: &str) -> String {
+    let [first, second] = tips;
+    format!(
+        r#"
+        format = 1
+        name = "relieved"
+        members = ["a", "b"]
+        terminals = ["a", "b"]
+        [oil]
+        viscosity_40 = "100 mm^2/s"
+        viscosity_100 = "11 mm^2/s"
+        density_15 = "880 kg/m^3"
+        temperature = "80 degC"
+        [laws]
+        mesh_friction = "constant"
+        friction_coefficient = 0.05
+        [[mesh]]
+        name = "pair"
+        gears = [
+          {{ member = "a", teeth = 16, shift = 0.1817{first} }},
+          {{ member = "b", teeth = 24, shift = 0.1715{second} }},
+        ]
+        geometry = {{ module = "4.5 mm", width = "14 mm"{geometry} }}
+        [[operation]]
+        name = "rated"
+        speeds = {{ a = "1500 rpm" }}
+        torques = {{ a = "{torque} N m" }}
+        "#
+    )
+}
+
+/// Relief of a fixed amount is deep under a small load and shallow under a large one.
+#[test]
+fn regress_tip_relief_lowers_the_loss_of_spur_teeth() {
+    let tip = ", tip_relief = \"35 um\", tip_relief_length = \"6.14 mm\"";
+    let factor = |torque: f64, tips: [&str; 2]| only(&relieved(torque, tips, "")).contacts.get("pair").unwrap().clone();
+    let plain = factor(183.0, ["", ""]);
+    let both = factor(183.0, [tip, tip]);
+    assert!((plain.loss_factor - 0.19863).abs() < 1e-4, "{plain:?}");
+    assert!((both.loss_factor - 0.1731).abs() < 2e-4, "{both:?}");
+    // the loss is the factor times the constant friction, and nothing else changed
+    let ratio = both.sliding_loss_w / plain.sliding_loss_w;
+    assert!((ratio - both.loss_factor / plain.loss_factor).abs() < 1e-9, "{ratio}");
+    assert_eq!(both.pitch_pressure_pa, plain.pitch_pressure_pa);
+    let [light, heavy] = [20.0, 3000.0].map(|t| factor(t, [tip, tip]).loss_factor);
+    assert!(light < both.loss_factor && both.loss_factor < heavy && heavy < plain.loss_factor, "{light} {heavy}");
+    // each end for itself: the tip of the driven gear acts where the teeth come into mesh
+    let [first, second] = [[tip, ""], ["", tip]].map(|tips| factor(183.0, tips));
+    assert!(first.loss_factor < plain.loss_factor && second.loss_factor < plain.loss_factor);
+    // no relief in words is none in bits
+    let zero = ", tip_relief = \"0 um\", tip_relief_length = \"6 mm\"";
+    assert_eq!(factor(183.0, [zero, zero]), plain);
+    // a stiffness that is given counts: half of it, half of the relief
+    let given = only(&relieved(183.0, [tip, tip], ", external_mesh_stiffness = \"8 N/(mm um)\""));
+    let soft = given.contacts.get("pair").unwrap().loss_factor;
+    assert!(both.loss_factor < soft && soft < plain.loss_factor, "{soft}");
+}
+
+#[test]
+fn tip_relief_that_cannot_be_is_refused() {
+    let long = ", tip_relief = \"35 um\", tip_relief_length = \"60 mm\"";
+    for (tips, geometry, code, words) in [
+        ([", tip_relief = \"35 um\"", ""], "", Code::MissingKey, "tip_relief_length"),
+        (["", ", tip_relief_length = \"5 mm\""], "", Code::MissingKey, "tip_relief"),
+        ([long, ""], "", Code::OutOfRange, "path of contact"),
+        ([", tip_relief = \"-5 um\", tip_relief_length = \"5 mm\"", ""], "", Code::OutOfRange, "not negative"),
+        (
+            [", tip_relief = \"35 um\", tip_relief_length = \"5 mm\"", ""],
+            ", helix = \"15 deg\"",
+            Code::OutOfRange,
+            "spur teeth only",
+        ),
+    ] {
+        let wrong = Train::from_toml(&relieved(183.0, tips, geometry)).unwrap_err();
+        assert!(wrong.iter().any(|d| d.code == code && d.message.contains(words)), "{words}: {wrong}");
+    }
+}

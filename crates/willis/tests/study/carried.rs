@@ -35,7 +35,9 @@ fn generated() -> Vec<(&'static str, String)> {
     let tooth = |tip: Option<f64>| {
         let tip =
             tip.map_or("addendum = 1.0, tip_alteration = '0 mm'".to_owned(), |d| format!("tip_diameter = '{d} mm'"));
-        format!("shift = 0.0, dedendum = 1.25, roughness = '0.5 um', immersion = '3 mm', {tip}")
+        format!(
+            "shift = 0.0, dedendum = 1.25, roughness = '0.5 um', immersion = '3 mm', tip_relief = '20 um', tip_relief_length = '4 mm', {tip}"
+        )
     };
     let geometry = "{ module = '4 mm', width = '50 mm', pressure_angle = '20 deg', helix = '0 deg', double_helical = true, \
                     addendum = 1.0, dedendum = 1.25, roughness = '0.6 um', youngs_modulus = '206 GPa', poisson_ratio = 0.3, hand = 'right', position = '5 mm', jet_flow = '0.3 l/min', jet_speed = '5 m/s', jet_side = 'out-of-mesh', load_sharing_factor = 1.1, mesh_stiffness = 'iso-6336', external_mesh_stiffness = '18 N/(mm um)', internal_mesh_stiffness = '19 N/(mm um)' }";

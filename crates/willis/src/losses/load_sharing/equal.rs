@@ -8,6 +8,7 @@ use crate::real::max;
 /// # Formula
 /// ```text
 /// spur:     share = 1/n(x),  n = tooth pairs in contact = ⌊x⌋ + ⌊ε_α − x⌋ + 1
+///           relieved tips: share = max(0, δ − g(x)),  Σ_k max(0, δ − g(x + k)) = 1
 /// helical:  share = ∫_0^ε_β dy/l(x + y)
 ///           l(t) = ∫_0^ε_β [tooth pairs in contact in the section y at phase t] dy
 /// ```
@@ -22,14 +23,17 @@ use crate::real::max;
 /// | ε_α   | `contact_ratio` | −          | transverse contact ratio                     |
 /// | ε_β   | `overlap_ratio` | −          | overlap ratio                                |
 /// | y, t  |                 | −          | place along the width; phase, in base pitches |
+/// | g, δ  | `relief`        | −          | gap by tip relief; approach of the flanks, both over the deflection of one pair under the whole load |
 ///
 /// # Valid for
-/// Rigid teeth without profile modification and without misalignment. With a contact ratio above 2
+/// Rigid teeth without misalignment; tip relief of spur gears, whose tooth pairs then are springs of one stiffness. With a contact ratio above 2
 /// the pairs in contact share alike: 1/2 or 1/3. For ε_β → 0 the helical form becomes the one for
 /// spur gears, for a whole ε_β it becomes 1/ε_α.
 ///
 /// # Departs from the source
-/// The field of contact is integrated in closed form instead of numerically.
+/// The field of contact is integrated in closed form instead of numerically. Tip relief is derived here: pairs as equal
+/// springs side by side, less their gaps. A relief of depth 1 down to single contact hands the load over linearly, from 0
+/// at A to all of it at B.
 ///
 /// # Source
 /// `[wimmer2006]`, load distribution on a rigid plane of action.
@@ -39,12 +43,16 @@ use crate::real::max;
 /// Spur, ε_α = 1.5: 1/2 at x = 0.25, where a second pair is in contact at 1.25.
 /// Helical, ε_α = 1.5, ε_β = 1, by hand: l = 1.5 at every phase, share = 1/1.5.
 /// ```
-/// # use willis::losses::load_sharing::{Equal, Law, ToothLoad};
-/// let spur = ToothLoad { position: 0.25, contact_ratio: 1.5, overlap_ratio: 0.0 };
+/// # use willis::losses::load_sharing::{Equal, Law, Relief, ToothLoad};
+/// let relief = Relief::none();
+/// let spur = ToothLoad { position: 0.25, contact_ratio: 1.5, overlap_ratio: 0.0, relief };
 /// assert_eq!(Equal::DEFAULT.eval(&spur), 0.5);
 /// assert!(Equal::DEFAULT.outside(&spur).is_empty());
 /// let helical = ToothLoad { overlap_ratio: 1.0, ..spur };
 /// assert_eq!(format!("{:.6}", Equal::DEFAULT.eval(&helical)), "0.666667");
+/// // relieved by 1 over half a base pitch, by hand: 0.1/0.5 at 0.1 behind A
+/// let relief = Relief { depth: [1.0; 2], length: [0.5; 2] };
+/// assert!((Equal::DEFAULT.eval(&ToothLoad { position: 0.1, relief, ..spur }) - 0.2).abs() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equal;
@@ -62,19 +70,31 @@ impl Law for Equal {
         source: ("wimmer2006", "rigid plane of action"),
         trust: Trust::Derived,
         tags: &[],
-        valid: &[Range {
-            symbol: "e_a + e_b",
-            unit: "-",
-            min: 1.0,
-            max: f64::INFINITY,
-            get: |s| s.contact_ratio + s.overlap_ratio,
-        }],
+        valid: &[
+            Range {
+                symbol: "e_a + e_b",
+                unit: "-",
+                min: 1.0,
+                max: f64::INFINITY,
+                get: |s| s.contact_ratio + s.overlap_ratio,
+            },
+            Range {
+                symbol: "e_b, relieved",
+                unit: "-",
+                min: 0.0,
+                max: 0.0,
+                get: |s| if s.relief.any() { s.overlap_ratio } else { 0.0 },
+            },
+        ],
     };
 
     fn eval<D: Real>(&self, s: &ToothLoad<D>) -> D {
         let (x, e_a, e_b) = (s.position, s.contact_ratio, s.overlap_ratio);
         if !s.on_path() {
             return D::zero();
+        }
+        if e_b.re() < 1e-9 && s.relief.any() {
+            return s.relieved(|_| D::one());
         }
         if e_b.re() < 1e-9 {
             return D::from(1.0 / (x.re().floor() + (e_a.re() - x.re()).floor() + 1.0));
@@ -149,9 +169,10 @@ impl<D: Real> Lines<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::losses::load_sharing::Relief;
 
     fn share(position: f64, contact_ratio: f64, overlap_ratio: f64) -> f64 {
-        Equal::DEFAULT.eval(&ToothLoad { position, contact_ratio, overlap_ratio })
+        Equal::DEFAULT.eval(&ToothLoad { position, contact_ratio, overlap_ratio, relief: Relief::none() })
     }
 
     /// The share by counting contact lines in many sections.

@@ -9,6 +9,7 @@ use crate::real::min;
 /// ```text
 /// share = c(x)/Σ_k c(x + k)    c(x) = 1/3 + 1/3 · min(x, ε_α − x, ε_α − 1)/(ε_α − 1)
 /// 1 ≤ ε_α ≤ 2:  A to B 1/3 … 2/3,  B to D 1,  D to E 2/3 … 1/3
+/// relieved tips: share = 3/2 c(x) max(0, δ − g(x)),  Σ_k 3/2 c(x + k) max(0, δ − g(x + k)) = 1
 /// ```
 ///
 /// # Symbols
@@ -17,14 +18,15 @@ use crate::real::min;
 /// | x     | `position`      | −          | distance from A in base pitches |
 /// | ε_α   | `contact_ratio` | −          | transverse contact ratio        |
 /// | c     |                 | −          | relative stiffness of the pair  |
+/// | g, δ  | `relief`        | −          | gap by tip relief; approach of the flanks, both over the deflection of one pair under the whole load |
 ///
 /// # Valid for
-/// Gears of steel of usual proportions without profile modification, contact ratio 1 to 2. A
+/// Gears of steel of usual proportions, their tips relieved or not, contact ratio 1 to 2. A
 /// helical gear is taken as slices that do not support each other, whatever its overlap ratio.
 ///
 /// # Departs from the source
 /// The source gives the trapezoid for a contact ratio of 1 to 2. Beyond 2 the pairs in contact
-/// share in the proportion of the same c(x).
+/// share in the proportion of the same c(x). Tip relief is derived here: springs side by side, less their gaps.
 ///
 /// # Source
 /// `[isotr13989_1]`, clause 9.2, equations (57) to (60): load sharing factor, spur gears with unmodified
@@ -33,8 +35,9 @@ use crate::real::min;
 /// # Example
 /// ε_α = 1.5, x = 0.25, by hand: 1/3 + 1/3 · 0.25/0.5 = 0.5; x = 0: 1/3.
 /// ```
-/// # use willis::losses::load_sharing::{Law, Stiffness, ToothLoad};
-/// let at = |position| ToothLoad { position, contact_ratio: 1.5, overlap_ratio: 0.0 };
+/// # use willis::losses::load_sharing::{Law, Relief, Stiffness, ToothLoad};
+/// let relief = Relief::none();
+/// let at = |position| ToothLoad { position, contact_ratio: 1.5, overlap_ratio: 0.0, relief };
 /// assert_eq!(format!("{:.4}", Stiffness::DEFAULT.eval(&at(0.25))), "0.5000");
 /// assert!(Stiffness::DEFAULT.outside(&at(0.25)).is_empty());
 /// assert_eq!(format!("{:.4}", Stiffness::DEFAULT.eval(&at(0.0))), "0.3333");
@@ -71,6 +74,9 @@ impl Law for Stiffness {
             return D::one();
         }
         let stiffness = |x: D| (min(min(x, e_a - x), e_a - 1.0) / (e_a - 1.0) + 1.0) / 3.0;
+        if s.relief.any() {
+            return s.relieved(|x| stiffness(x) * 1.5);
+        }
         let first = -x.re().floor();
         let mut sum = D::zero();
         for k in 0..((x.re().floor() + (e_a.re() - x.re()).floor()) as usize + 1).min(1000) {

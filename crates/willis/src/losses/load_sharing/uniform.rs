@@ -28,8 +28,8 @@ use crate::losses::{Meta, Range, Trust};
 /// # Example
 /// By hand, ε_α = 1.6: 1/1.6 = 0.625 everywhere.
 /// ```
-/// # use willis::losses::load_sharing::{Law, ToothLoad, Uniform};
-/// let place = ToothLoad { position: 0.3, contact_ratio: 1.6, overlap_ratio: 1.0 };
+/// # use willis::losses::load_sharing::{Law, Relief, ToothLoad, Uniform};
+/// let place = ToothLoad { position: 0.3, contact_ratio: 1.6, overlap_ratio: 1.0, relief: Relief::none() };
 /// assert_eq!(Uniform::DEFAULT.eval(&place), 0.625);
 /// assert!(Uniform::DEFAULT.outside(&place).is_empty());
 /// ```
@@ -49,7 +49,10 @@ impl Law for Uniform {
         source: ("niemann_winter2003", "helical gears"),
         trust: Trust::Derived,
         tags: &[],
-        valid: &[Range { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio }],
+        valid: &[
+            Range { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio },
+            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
+        ],
     };
 
     fn eval<D: Real>(&self, s: &ToothLoad<D>) -> D {

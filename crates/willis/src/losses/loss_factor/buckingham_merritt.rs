@@ -60,6 +60,7 @@ impl Law for BuckinghamMerritt {
             Range { symbol: "beta_b", unit: "rad", min: 0.0, max: 0.0, get: |s| s.base_helix },
             Range { symbol: "e_1", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] },
             Range { symbol: "e_2", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[1] },
+            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 

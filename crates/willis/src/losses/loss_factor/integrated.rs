@@ -26,15 +26,17 @@ use crate::real::abs;
 /// | ε_α      |                 | −          | e_1 + e_2                                    |
 /// | ε_β      | `overlap_ratio` | −          | overlap ratio of one helix                   |
 /// | share    | `sharing`       | −          | load of the pair over that of the mesh       |
+/// | C_a, c'  | `relief`        | −          | tip relief, in the sharing                   |
 ///
 /// # Valid for
 /// Any contact ratio with `ε_α + ε_β ≥ 1`, external and ring; one coefficient of friction for the
-/// whole path; no profile modification. Tip relief lowers the loss: 0.168 is published for a type C
-/// gear with 35 µm relief where this law gives 0.199.
+/// whole path; tip relief of spur gears as far as the sharing knows it. Relief lowers the loss: 0.168 is published for a
+/// type C gear with 35 µm at 183 N m, where this law gives 0.173 with relief down to single contact, and 0.199 without.
 ///
 /// # Departs from the source
 /// Between the points A, B, C, D, E, and the places where a contact line reaches a corner of the
-/// field, Gauss–Legendre quadrature with 10 points stands for the sum over a grid.
+/// field, Gauss–Legendre quadrature with 10 points stands for the sum over a grid; with tip relief
+/// also where one of two pairs loses contact, and in pieces of at most 1/32 of a base pitch, for more pairs than two.
 ///
 /// # Source
 /// `[wimmer2006]`, local loss factor H_VL. The number of the equation there is not known to us.
@@ -46,6 +48,15 @@ use crate::real::abs;
 /// # use willis::losses::loss_factor::{Integrated, Law, Path};
 /// assert_eq!(format!("{:.5}", Integrated::DEFAULT.eval(&Path::typical())), "0.21312");
 /// assert!(Integrated::DEFAULT.outside(&Path::typical()).is_empty());
+/// ```
+/// Both tips relieved by the deflection of one pair, down to single contact, L = ε_α − 1: by hand
+/// 2 K (L ε_α/2 − 2 L²/3 + (0.2426² + 0.2097²)/2) = 0.18036.
+/// ```
+/// # use willis::losses::load_sharing::Relief;
+/// # use willis::losses::loss_factor::{Integrated, Law, Path};
+/// let relief = Relief { depth: [1.0; 2], length: [Path::typical().contact_ratio() - 1.0; 2] };
+/// let path = Path { relief, ..Path::typical() };
+/// assert_eq!(format!("{:.5}", Integrated::DEFAULT.eval(&path)), "0.18036");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integrated {
@@ -66,6 +77,25 @@ const GAUSS: [(f64, f64); 5] = [
     (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
     (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
 ];
+
+/// Where one of two relieved pairs, a base pitch apart, loses contact: `g(x) − g(x + 1) = ±1`, with the relief of one end or
+/// of both; up to whole base pitches. 0 where there is no such place.
+fn lifts<D: Real>(s: &Path<D>) -> [D; 4] {
+    let [from_start, from_end] = [0, 1].map(|k| {
+        let (depth, length) = (s.relief.depth[k], s.relief.length[k]);
+        if depth.re() > 0.0 && length.re() > 0.0 { (depth, depth / length) } else { (D::zero(), D::zero()) }
+    });
+    let e_a = s.contact_ratio();
+    let zero_of = |rest: D, slope: D| if slope.re() > 0.0 { rest / slope } else { D::zero() };
+    let ((a, steep_a), (e, steep_e)) = (from_start, from_end);
+    let both = a - e + steep_e * (e_a - 1.0);
+    [
+        zero_of(a - 1.0, steep_a),
+        e_a - zero_of(e - 1.0, steep_e),
+        zero_of(both - 1.0, steep_a + steep_e),
+        zero_of(both + 1.0, steep_a + steep_e),
+    ]
+}
 
 impl Law for Integrated {
     const META: Meta<Path<f64>> = Meta {
@@ -89,7 +119,10 @@ impl Law for Integrated {
         let fraction = |d: D| d - d.re().floor();
         let (n_a, n_b) = (fraction(e_a), fraction(e_b));
         // Places, up to whole base pitches, where the sharing has a kink or a step.
-        let kinks = [D::zero(), n_a, n_b, n_a + n_b, -n_b, n_a - n_b, e_a / 2.0];
+        let relieved = s.relief.any();
+        let [from_start, from_end] = s.relief.length.map(|l| if relieved { l } else { D::zero() });
+        let kinks = [D::zero(), n_a, n_b, n_a + n_b, -n_b, n_a - n_b, e_a / 2.0, from_start, n_a - from_end];
+        let lifts = if relieved { lifts(s) } else { [D::zero(); 4] };
         let next = |x: D| {
             let mut nearest = e_a;
             let mut offer = |place: D| {
@@ -98,7 +131,10 @@ impl Law for Integrated {
                 }
             };
             offer(pitch_point);
-            for kink in kinks {
+            if relieved {
+                offer(x + 1.0 / 32.0);
+            }
+            for kink in kinks.into_iter().chain(lifts) {
                 let periods = (x.re() - kink.re()).floor();
                 offer(kink + periods + 1.0);
                 offer(kink + periods + 2.0);
@@ -106,7 +142,7 @@ impl Law for Integrated {
             nearest
         };
         let moment = |x: D| {
-            let place = ToothLoad { position: x, contact_ratio: e_a, overlap_ratio: e_b };
+            let place = ToothLoad { position: x, contact_ratio: e_a, overlap_ratio: e_b, relief: s.relief };
             self.sharing.eval(&place) * abs(x - pitch_point)
         };
         let mut sum = D::zero();

@@ -57,6 +57,7 @@ impl Law for Iso14179Part1 {
         valid: &[
             Range { symbol: "e_1", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] },
             Range { symbol: "e_2", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[1] },
+            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 

@@ -60,6 +60,7 @@ impl Law for Ohlendorf {
             Range { symbol: "e_1", unit: "-", min: 0.0, max: 1.0, get: |s| s.e[0] },
             Range { symbol: "e_2", unit: "-", min: 0.0, max: 1.0, get: |s| s.e[1] },
             Range { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
+            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 

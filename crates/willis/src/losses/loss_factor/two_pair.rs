@@ -58,6 +58,7 @@ impl Law for TwoPair {
         valid: &[
             Range { symbol: "e_a", unit: "-", min: 1.0, max: 2.0, get: |s| s.e[0] + s.e[1] },
             Range { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
+            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 

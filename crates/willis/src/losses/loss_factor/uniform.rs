@@ -40,6 +40,7 @@ use crate::real::abs;
 ///     e: [0.7589558, 0.7488578],
 ///     overlap_ratio: 1.3628,
 ///     operating_helix: 22f64.to_radians(),
+///     ..Path::typical()
 /// };
 /// assert_eq!(format!("{:.5}", Uniform::DEFAULT.eval(&path)), "0.15393");
 /// assert!(Uniform::DEFAULT.outside(&path).is_empty());
@@ -63,6 +64,7 @@ impl Law for Uniform {
         valid: &[
             Range { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio },
             Range { symbol: "e_a", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] + s.e[1] },
+            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 

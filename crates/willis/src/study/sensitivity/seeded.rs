@@ -7,7 +7,7 @@ use crate::geometry::{Pair, PairData, Tip};
 use crate::operating_point::{
     DragNumbers, MountNumbers, Numbers, OilState, PumpNumbers, RotorNumbers, VariatorNumbers,
 };
-use crate::train::{BearingNumber, Jet, LossPart, PumpNumber, RotorNumber, Slot, Teeth, Train, steel_mass};
+use crate::train::{BearingNumber, Jet, LossPart, PumpNumber, RotorNumber, Slot, Teeth, TipRelief, Train, steel_mass};
 
 /// A number that nothing depends on.
 fn constant(value: f64) -> Dual64 {
@@ -44,6 +44,11 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
             poisson_ratio: seeded(Slot::PoissonRatio(j), t.poisson_ratio),
             stiffness: t.stiffness,
             stiffness_by_standard: t.stiffness_by_standard,
+            relief: t.relief.map(|relief| TipRelief {
+                amount: [0, 1].map(|k| seeded(Slot::TipRelief(j, k, true), relief.amount[k])),
+                length: [0, 1].map(|k| seeded(Slot::TipRelief(j, k, false), relief.length[k])),
+                stiffness: relief.stiffness,
+            }),
         }));
     }
     let bearings: Vec<MountNumbers<Dual64>> = train

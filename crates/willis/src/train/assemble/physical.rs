@@ -10,7 +10,7 @@ use crate::losses::seal::Material;
 use crate::train::assembler::Assembler;
 use crate::train::physical::{
     BearingMount, Jet, Known, LossFactors, LossPart, Lubrication, OpenElement, PlanetBody, Pump, Rotor, SealMount,
-    Teeth, steel_mass,
+    Teeth, TipRelief, steel_mass,
 };
 use crate::train::specification::{
     Fluid, JetSide, LawsSpec, MeshStiffness, PlainBearing, PlainGeometry, PlainHousing, PlainLossFactor, PlainLosses,
@@ -40,6 +40,14 @@ const USUAL_BACKLASH: f64 = 0.5;
 /// Whether operating angle and backlash are those of teeth in use.
 fn usual(pair: &Pair) -> bool {
     USUAL_ANGLES.contains(&pair.operating_pressure_angle) && pair.backlash.abs() <= USUAL_BACKLASH * pair.data.module
+}
+
+/// The mean stiffness of a mesh over its width as far as it is given, N/m for each m.
+fn given_stiffness(g: &PlainGeometry, pair: &Pair) -> Option<f64> {
+    match pair.data.wheels.iter().any(|w| w.internal) {
+        true => g.internal_mesh_stiffness,
+        false => g.external_mesh_stiffness,
+    }
 }
 
 impl Assembler<'_> {
@@ -114,6 +122,9 @@ impl Assembler<'_> {
         for (_, _, t) in &gears {
             good &= self.positive(t.roughness.unwrap_or(0.0) * 1e6, true, "a roughness", "µm", place);
             good &= self.positive(t.immersion.unwrap_or(0.0) * 1e3, true, "an immersion", "mm", place);
+            good &= self.positive(t.tip_relief.unwrap_or(0.0) * 1e6, true, "a tip relief", "µm", place);
+            let length = t.tip_relief_length.unwrap_or(0.0) * 1e3;
+            good &= self.positive(length, true, "a length of tip relief", "mm", place);
         }
         if !good {
             return None;
@@ -191,6 +202,7 @@ impl Assembler<'_> {
             self.assume(title, "roughness not given, taken as Ra 0.4 µm (ground)");
         }
         let stiffness = self.mesh_stiffness(g, &pair, title, &at);
+        let relief = self.tip_relief(g, &pair, gears.map(|(_, _, t)| t), title, place);
         Some(Teeth {
             pair,
             roughness: roughness.map(|r| r.unwrap_or(ROUGHNESS)),
@@ -207,15 +219,75 @@ impl Assembler<'_> {
             poisson_ratio: g.poisson_ratio(),
             stiffness,
             stiffness_by_standard: g.mesh_stiffness == Some(MeshStiffness::Iso6336),
+            relief,
         })
+    }
+
+    /// Tip relief of the gears of a pair.
+    fn tip_relief(
+        &mut self,
+        g: &PlainGeometry,
+        pair: &Pair,
+        teeth: [&PlainTooth; 2],
+        title: &str,
+        place: &str,
+    ) -> Option<TipRelief> {
+        let mut relief = TipRelief { amount: [0.0; 2], length: [0.0; 2], stiffness: given_stiffness(g, pair) };
+        let path = pair.contact_ratio * pair.base_pitch;
+        for (k, t) in teeth.into_iter().enumerate() {
+            let (amount, length) = match (t.tip_relief, t.tip_relief_length) {
+                (None, None) => continue,
+                (Some(amount), Some(length)) => (amount, length),
+                (amount, _) => {
+                    let (has, misses) = match amount {
+                        Some(_) => ("tip_relief", "tip_relief_length"),
+                        None => ("tip_relief_length", "tip_relief"),
+                    };
+                    let message = format!("{}: a gear has `{has}` but no `{misses}`", clip(title));
+                    let hint = "amount at the tip and length along the path of contact belong together";
+                    self.report_once(Diagnostic::new(Code::MissingKey, place, message).hint(hint));
+                    continue;
+                }
+            };
+            // Without one of the two the teeth are unmodified.
+            if amount == 0.0 || length == 0.0 {
+                continue;
+            }
+            if length > path {
+                let [length, path] = [length, path].map(|x| (x * 1e6).round() / 1e3);
+                let message = format!(
+                    "{}: a tip relief {length} mm long, on a path of contact of {path} mm: it is measured along the path, from the tip",
+                    clip(title)
+                );
+                self.report_once(Diagnostic::new(Code::OutOfRange, place, message));
+                continue;
+            }
+            if pair.data.helix != 0.0 {
+                let message = format!(
+                    "{}: tip relief of helical teeth (helix angle {:.3}°): its effect on losses is known here for spur teeth only",
+                    clip(title),
+                    pair.data.helix.to_degrees()
+                );
+                self.report_once(Diagnostic::new(Code::OutOfRange, place, message).hint("leave the relief out"));
+                continue;
+            }
+            (relief.amount[k], relief.length[k]) = (amount, length);
+        }
+        if relief.amount == [0.0; 2] {
+            return None;
+        }
+        if relief.stiffness.is_none()
+            && let Some(how) = pair.beyond_stiffness()
+        {
+            let message = format!("{}: the stiffness by ISO 6336-1 is a guess for {how}", clip(title));
+            self.report_once(Diagnostic::new(Code::DoubtfulGeometry, format!("{place}.geometry"), message));
+        }
+        Some(relief)
     }
 
     /// Stiffness of a pair along the line of action, N/m.
     fn mesh_stiffness(&mut self, g: &PlainGeometry, pair: &Pair, title: &str, at: &str) -> Option<f64> {
-        let given = match pair.data.wheels.iter().any(|w| w.internal) {
-            true => g.internal_mesh_stiffness,
-            false => g.external_mesh_stiffness,
-        };
+        let given = given_stiffness(g, pair);
         let width = pair.data.width * if pair.data.double_helical { 2.0 } else { 1.0 };
         if let Some(over_width) = given {
             return Some(over_width * width);
