@@ -140,6 +140,36 @@ fn rows_are_train_files_with_the_ratios_shown() {
     assert!(missing.unwrap_err().to_string().contains("there is no row 7: the answer has 6"));
 }
 
+/// From a wish to teeth in two questions: what one writes, the other takes as it is.
+#[test]
+fn rows_are_design_files_whose_teeth_are_found() {
+    // No teeth are given, only basic ratios; an end of each range cuts the tolerance of a gear.
+    let wish = json!({
+        "k": ["2.38", "1.76"], "elements": 5, "closed": 2, "forward": 4, "forward_range": "0.5..3",
+        "step": "1.15..2.2", "reverse_range": "1.2..5", "max_speed": "4", "max_torque": "6", "write": [1, 2],
+    });
+    let (answer, json) = answered(wish, &Serial);
+    let files = answer.write("design-file").unwrap();
+    assert_eq!(files.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["scheme-1-design.toml", "scheme-2-design.toml"]);
+    for (file, scheme) in files.iter().zip(json["schemes"].as_array().unwrap()) {
+        let text = String::from_utf8(file.bytes.clone()).unwrap();
+        let design = question("design").unwrap();
+        let design = design.request(json!({ "file": { "name": file.name, "text": text } })).unwrap();
+        let found = design.ask_for_good(Arc::new([]), &Serial).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let report: Value = serde_json::from_str(&found.json()).unwrap();
+        assert!(report["completeness"]["complete"].as_bool().unwrap());
+        let row = &report["rows"][0];
+        assert!(row["element_torque"].as_f64().unwrap() <= 6.0 && row["member_speed"].as_f64().unwrap() <= 4.0);
+        for gear in scheme["gears"].as_array().unwrap().iter().chain(scheme["reverse"].as_array().unwrap()) {
+            let state = &row["states"][gear["name"].as_str().unwrap()];
+            let [own, teeth] = [&gear["value"], &state["value"]].map(|v| v.as_f64().unwrap());
+            assert!((teeth / own - 1.0).abs() <= 0.005 && teeth <= 3.0, "{own} {teeth}");
+        }
+    }
+    let hybrid = request(hybrid()).ask_for_good(Arc::new([]), &Serial).unwrap().write("design-file").unwrap_err();
+    assert!(hybrid.to_string().contains("the modes of a hybrid are no gears"), "{hybrid}");
+}
+
 #[test]
 fn hybrids_are_train_files_with_the_ratios_of_their_fixed_gears() {
     let rows: Vec<usize> = (1..=40).collect();

@@ -20,6 +20,7 @@
 //! crossing.
 
 mod choose;
+mod design_file;
 mod harvest;
 mod hybrid;
 mod hybrid_file;

@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use willis::Train;
 use willis::work::{Serial, Work};
 use willis_synthesis::schemes::{
-    Harvest, HybridWish, Hybrids, Known, ModeKind, Order, Schemes, Search, SetRatio, Wish, hybrids,
+    Harvest, HybridWish, Hybrids, KNOWN, Known, Layout, ModeKind, Order, Schemes, Search, SetRatio, Wish, hybrids,
 };
+use willis_synthesis::teeth::{Design, Request};
 
 fn wish(sets: &[&str], [elements, closed, forward]: [usize; 3], ranges: [&str; 3]) -> Wish {
     let mut wish = Wish::new(sets, elements, closed, forward).unwrap();
@@ -238,4 +240,30 @@ fn bad_wishes_are_refused_in_words() {
     let hybrid = HybridWish::new(&["2"], 3, &["split"]).unwrap_err();
     assert!(hybrid.contains("no kind of mode; there are input-split"), "{hybrid}");
     assert!(HybridWish::new(&["2"], 3, &["fixed"]).unwrap().check().is_err());
+}
+
+/// The way from a scheme to its teeth: real transmissions get back the teeth that gave their ratios.
+#[test]
+fn val_schemes_of_real_teeth_get_these_teeth_back() {
+    for known in KNOWN {
+        let base = wish(known.sets, [known.elements().len(), known.closed, known.forward], ["0.5..6", "1.05..2.2", "1.2..7"]);
+        let wish = Wish { layout: known.layout(), ..base };
+        let scheme = known.rediscover(&Search::new(&wish).unwrap()).scheme.unwrap();
+        let text = scheme.to_design(&wish);
+        let design = Design::from_toml(&text).unwrap_or_else(|e| panic!("{}: {e:?}\n{text}", known.name));
+        let own = Some((known.name.to_owned(), scheme.to_toml()));
+        let started = std::time::Instant::now();
+        let answer = design.answer(&Request { own, ..Request::default() }, &Serial).unwrap();
+        println!("{}: {:?} {}", known.name, started.elapsed(), answer.completeness.statement);
+        assert!(answer.completeness.complete && answer.rows[0].error < 0.005, "{}", known.name);
+        let own = answer.own.unwrap();
+        assert!(own.fails.is_empty(), "{}: {:?}", known.name, own.fails);
+        assert!(own.row.states.iter().all(|(_, s)| s.ratio == s.target), "{}", known.name);
+        // Sorted by deviation: the first row has the ratios of the scheme exactly.
+        assert!(answer.rows[0].states.iter().all(|(_, s)| s.ratio == s.target), "{}", known.name);
+        // A row is the scheme with these teeth: the same elements in the same gears.
+        let train = Train::from_toml(&design.train_file(&answer.rows[0])).unwrap();
+        let (layout, _) = Layout::of_train(&train).unwrap();
+        assert_eq!(layout, scheme.layout, "{}", known.name);
+    }
 }

@@ -53,6 +53,15 @@ impl Scheme {
     /// are those of the wish, or small numbers with the same ratios; mesh efficiencies are 0.98 of sun and planet and 0.99 of
     /// planet and ring.
     pub fn to_toml(&self) -> String {
+        let mut text = self.head();
+        for (n, set) in self.sets.iter().enumerate() {
+            text += &set_lines(n + 1, set, &self.members(n));
+        }
+        text + &self.elements_and_states()
+    }
+
+    /// What a file of the scheme begins with.
+    pub(super) fn head(&self) -> String {
         let mut text = String::new();
         let name = self.known.clone().unwrap_or_else(|| format!("scheme {}", self.id));
         let ratios: Vec<String> = self.gears.iter().chain(&self.reverse).map(|g| format!("{:.3}", g.value)).collect();
@@ -63,15 +72,23 @@ impl Scheme {
             "source = \"Found by a search over all shift schemes: layout {}. Mesh efficiencies assumed.\"\n\n",
             self.id
         );
-        text += &format!("members = {}\nterminals = [\"input\", \"output\"]\n", quoted(turning));
-        let on = |member: String| match self.shafts.iter().find(|s| s.members.contains(&member)) {
-            Some(shaft) if shaft.name != "housing" => shaft.name.clone(),
-            _ => "frame".to_owned(),
-        };
-        for (n, set) in self.sets.iter().enumerate() {
-            let n = n + 1;
-            text += &set_lines(n, set, &["s", "r", "c"].map(|part| on(format!("{part}{n}"))));
-        }
+        text + &format!("members = {}\nterminals = [\"input\", \"output\"]\n", quoted(turning))
+    }
+
+    /// The members of sun, ring and carrier of a set, counted from 0.
+    pub(super) fn members(&self, set: usize) -> [String; 3] {
+        ["s", "r", "c"].map(|part| {
+            let member = format!("{part}{}", set + 1);
+            match self.shafts.iter().find(|s| s.members.contains(&member)) {
+                Some(shaft) if shaft.name != "housing" => shaft.name.clone(),
+                _ => "frame".to_owned(),
+            }
+        })
+    }
+
+    /// Clutches and brakes, and what is closed in each gear.
+    pub(super) fn elements_and_states(&self) -> String {
+        let mut text = String::new();
         for element in &self.elements {
             let kind = if element.kind == ShiftElementKind::Brake { "brake" } else { "clutch" };
             let members = quoted(element.joins.iter().filter(|s| *s != "housing"));
