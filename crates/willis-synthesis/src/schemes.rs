@@ -21,6 +21,7 @@
 
 mod choose;
 mod design_file;
+mod efficiency;
 mod harvest;
 mod hybrid;
 mod hybrid_file;

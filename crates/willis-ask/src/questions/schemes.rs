@@ -74,14 +74,23 @@ pub struct Schemes {
     /// No element carries more, per torque of the input and without losses: 4.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", allow_hyphen_values = true))]
     pub max_torque: Option<String>,
+    /// No gear has a lower efficiency when the input drives, by tooth friction alone: 0.95.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "EFFICIENCY", allow_hyphen_values = true))]
+    pub min_efficiency: Option<String>,
+    /// Efficiencies of the meshes of sun and planet, and of planet and ring, in every set. Default: 0.98,0.99.
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "EFFICIENCY", value_delimiter = ',', allow_hyphen_values = true)
+    )]
+    pub mesh_efficiency: Vec<String>,
     /// At most so many of the elements are brakes.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub max_brakes: Option<usize>,
     /// Only schemes that can be drawn with nested shafts and without a crossing.
     #[cfg_attr(feature = "clap", arg(long))]
     pub planar: bool,
-    /// Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest).
-    /// Default: found.
+    /// Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest),
+    /// efficiency (the largest of the worst gear). Default: found.
     #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER"))]
     pub order: Option<String>,
     /// How many are shown. Default: 10, or as many as --write names.

@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use willis::exact::Rational;
 
 use super::scheme::{Scheme, SchemeGear};
-use super::train_file::MESHES;
-use super::wish::{Bounds, SetRatio, Wish};
+use super::wish::{Bounds, SetRatio, Wish, decimal};
 use crate::teeth::MOST_TEETH;
 
 /// Relative tolerance of every ratio, in thousandths. With 1 % the four sets of an eight-speed transmission have 19 million
@@ -70,7 +69,7 @@ impl Scheme {
     /// connections, elements and gears, with ranges for the teeth of every set.
     ///
     /// * Each gear has its ratio as a target, within 0.5 % and within the range of the wish, and the steps of the wish to
-    ///   the next gear; the limits of the wish on speeds and torques stay. That no step is larger than the one before
+    ///   the next gear; the limits of the wish on speeds, torques and efficiency stay. That no step is larger than the one before
     ///   it is not asked.
     /// * Teeth are 12 at least, and 120 at most on a ring, or more where the basic ratio of the set needs them. The teeth
     ///   of the wish are within these ranges. A set has 3 to 6 planets; rings may have a tooth more or less
@@ -103,6 +102,9 @@ impl Scheme {
         if !limits.is_empty() {
             let _ = writeln!(text, "limits = {{ {} }}", limits.join(", "));
         }
+        if let Some(least) = &wish.min_efficiency {
+            let _ = writeln!(text, "require = {{ forward = {} }}", decimal(least));
+        }
         text += "minimize = [\"error\", \"ring_diameter\"]\nmaximize = [\"forward\"]\n";
         for (n, gear) in self.gears.iter().enumerate() {
             let ratio = ratio(gear, &wish.forward_range);
@@ -124,8 +126,8 @@ impl Scheme {
                  \"{least}..{most}\" }}\nring = {{ member = \"{ring}\", teeth = \"..{most}\" }}\ncarrier = \
                  \"{carrier}\"\nmesh_efficiency = {{ external = {}, internal = {} }}\n",
                 n + 1,
-                MESHES[0],
-                MESHES[1],
+                decimal(&self.mesh_efficiencies[0]),
+                decimal(&self.mesh_efficiencies[1]),
             );
         }
         text + &self.elements_and_states()

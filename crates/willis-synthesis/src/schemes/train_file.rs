@@ -4,11 +4,7 @@ use willis::exact::Rational;
 use willis::train::ShiftElementKind;
 
 use super::scheme::Scheme;
-use super::wish::SetRatio;
-
-/// Efficiencies of the meshes of sun and planet, and of planet and ring, that train files of schemes have: usual ones, where
-/// nothing is known of the teeth.
-pub(super) const MESHES: [&str; 2] = ["0.98", "0.99"];
+use super::wish::{SetRatio, decimal};
 
 /// Teeth of sun and ring: those that were given, or the fewest that have the ratio, a sun of 20 teeth or more, and a
 /// planet of whole teeth between them; fewer where willis reads no tooth number so large.
@@ -32,8 +28,8 @@ pub(super) fn quoted(names: impl IntoIterator<Item = impl AsRef<str>>) -> String
     format!("[{}]", all.join(", "))
 }
 
-/// A set of a train file: its number, its teeth, the members of sun, ring and carrier.
-pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String]) -> String {
+/// A set of a train file: its number, its teeth, the members of sun, ring and carrier, the efficiencies of its meshes.
+pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String], meshes: &[Rational; 2]) -> String {
     let [sun, ring] = teeth(set);
     let member = |k: usize| on.get(k).map_or("", String::as_str);
     format!(
@@ -43,19 +39,19 @@ pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String]) -> String {
         member(0),
         member(1),
         member(2),
-        MESHES[0],
-        MESHES[1],
+        decimal(&meshes[0]),
+        decimal(&meshes[1]),
     )
 }
 
 impl Scheme {
     /// The scheme as a complete train file: sets, shift elements, one state for every gear and reverse gear. Its teeth
-    /// are those of the wish, or small numbers with the same ratios; mesh efficiencies are 0.98 of sun and planet and 0.99 of
-    /// planet and ring.
+    /// are those of the wish, or small numbers with the same ratios; mesh efficiencies are
+    /// those of the wish.
     pub fn to_toml(&self) -> String {
         let mut text = self.head();
         for (n, set) in self.sets.iter().enumerate() {
-            text += &set_lines(n + 1, set, &self.members(n));
+            text += &set_lines(n + 1, set, &self.members(n), &self.mesh_efficiencies);
         }
         text + &self.elements_and_states()
     }
