@@ -35,7 +35,7 @@ fn range(set: &SetRatio) -> [i64; 2] {
     let needed = ceiling(&roomy).unwrap_or(MOST_TEETH);
     let own = set.teeth().map(|own| own.map(i64::from));
     let least = own.map_or(FEWEST, |[sun, ring]| FEWEST.min(sun).min((ring - sun) / 2).max(1));
-    let most = own.map_or(0, |[_, ring]| ring).max(needed).max(USUAL_RING).min(MOST_TEETH);
+    let most = own.map_or(0, |[_, ring]| ring).max(needed).clamp(USUAL_RING, MOST_TEETH);
     [least, most]
 }
 
