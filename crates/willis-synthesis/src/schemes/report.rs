@@ -90,8 +90,8 @@ pub struct SchemeRelaxation {
     pub change: String,
     /// How many schemes there are then; absent where that was not searched.
     pub schemes: Option<u64>,
-    /// How far it must give way for the first of them: the smallest largest step, speed or torque, or the largest smallest efficiency
-    /// that there is.
+    /// How far it must give way for the first of them: the smallest largest step, speed or torque, or the largest smallest
+    /// efficiency that there is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
     /// Why it was not searched.
