@@ -107,6 +107,31 @@ fn gears_have_the_efficiencies_of_the_example() {
     assert!(assumed.contains("0.98 of sun and planet and 0.99 of planet and ring"), "{assumed}");
 }
 
+/// A wish for efficiency orders and limits, with the mesh efficiencies that it states.
+#[test]
+fn efficiencies_rank_and_limit() {
+    let lowest = |scheme: &Value| {
+        let gears = scheme["gears"].as_array().unwrap().iter().chain(scheme["reverse"].as_array().unwrap());
+        gears.map(|g| g["efficiency"].as_f64().unwrap()).fold(1.0, f64::min)
+    };
+    let wish = with(&two_sets(5, 4), json!({ "order": "efficiency", "mesh_efficiency": ["0.97"], "top": 400 }));
+    let (_, all) = answered(wish.clone(), &Serial);
+    let own: Vec<f64> = all["schemes"].as_array().unwrap().iter().map(lowest).collect();
+    assert!(own.len() == 350 && own.windows(2).all(|w| w[0] >= w[1] - 1e-9));
+    assert!(all["assumptions"].to_string().contains("0.97 of sun and planet and 0.97 of planet and ring"));
+    let (_, some) = answered(with(&wish, json!({ "min_efficiency": "0.85" })), &Serial);
+    assert_eq!(counts(&some)[0] as usize, own.iter().filter(|e| **e >= 0.85).count());
+    assert!(counts(&some)[0] > 0 && counts(&some)[0] < 350);
+    for (wrong, why) in [
+        (json!({ "mesh_efficiency": ["1.2"] }), "is not above 0 and at most 1"),
+        (json!({ "mesh_efficiency": ["0.9", "0.9", "0.9"] }), "more than two entries"),
+        (json!({ "min_efficiency": "high" }), "give a part of 1"),
+    ] {
+        let said = refused(with(&wish, wrong));
+        assert!(said.contains(why), "{said}");
+    }
+}
+
 #[test]
 fn rows_are_train_files_with_the_ratios_shown() {
     let rows: Vec<usize> = (1..=25).collect();
@@ -138,6 +163,39 @@ fn rows_are_train_files_with_the_ratios_shown() {
     let missing =
         request(with(&zf(), json!({ "write": [7] }))).ask_for_good(Arc::new([]), &Serial).unwrap().write("train");
     assert!(missing.unwrap_err().to_string().contains("there is no row 7: the answer has 6"));
+}
+
+/// From a wish to teeth in two questions: what one writes, the other takes as it is.
+#[test]
+fn rows_are_design_files_whose_teeth_are_found() {
+    // No teeth are given, only basic ratios; an end of each range cuts the tolerance of a gear.
+    let wish = json!({
+        "k": ["2.38", "1.76"], "elements": 5, "closed": 2, "forward": 4, "forward_range": "0.5..3",
+        "step": "1.15..2.2", "reverse_range": "1.2..5", "max_speed": "4", "max_torque": "6", "write": [1, 2],
+    });
+    let (answer, json) = answered(wish, &Serial);
+    let files = answer.write("design-file").unwrap();
+    assert_eq!(
+        files.iter().map(|f| f.name.as_str()).collect::<Vec<_>>(),
+        ["scheme-1-design.toml", "scheme-2-design.toml"]
+    );
+    for (file, scheme) in files.iter().zip(json["schemes"].as_array().unwrap()) {
+        let text = String::from_utf8(file.bytes.clone()).unwrap();
+        let design = question("design").unwrap();
+        let design = design.request(json!({ "file": { "name": file.name, "text": text } })).unwrap();
+        let found = design.ask_for_good(Arc::new([]), &Serial).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let report: Value = serde_json::from_str(&found.json()).unwrap();
+        assert!(report["completeness"]["complete"].as_bool().unwrap());
+        let row = &report["rows"][0];
+        assert!(row["element_torque"].as_f64().unwrap() <= 6.0 && row["member_speed"].as_f64().unwrap() <= 4.0);
+        for gear in scheme["gears"].as_array().unwrap().iter().chain(scheme["reverse"].as_array().unwrap()) {
+            let state = &row["states"][gear["name"].as_str().unwrap()];
+            let [own, teeth] = [&gear["value"], &state["value"]].map(|v| v.as_f64().unwrap());
+            assert!((teeth / own - 1.0).abs() <= 0.005 && teeth <= 3.0, "{own} {teeth}");
+        }
+    }
+    let hybrid = request(hybrid()).ask_for_good(Arc::new([]), &Serial).unwrap().write("design-file").unwrap_err();
+    assert!(hybrid.to_string().contains("the modes of a hybrid are no gears"), "{hybrid}");
 }
 
 #[test]

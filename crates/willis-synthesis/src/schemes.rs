@@ -20,6 +20,8 @@
 //! crossing.
 
 mod choose;
+mod design_file;
+mod efficiency;
 mod harvest;
 mod hybrid;
 mod hybrid_file;

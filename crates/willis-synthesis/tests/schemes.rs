@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use willis::Train;
 use willis::work::{Serial, Work};
 use willis_synthesis::schemes::{
-    Harvest, HybridWish, Hybrids, Known, ModeKind, Order, Schemes, Search, SetRatio, Wish, hybrids,
+    Harvest, HybridWish, Hybrids, KNOWN, Known, Layout, ModeKind, Order, Scheme, Schemes, Search, SetRatio, Wish,
+    hybrids,
 };
+use willis_synthesis::teeth::{Design, Request};
 
 fn wish(sets: &[&str], [elements, closed, forward]: [usize; 3], ranges: [&str; 3]) -> Wish {
     let mut wish = Wish::new(sets, elements, closed, forward).unwrap();
@@ -238,4 +241,72 @@ fn bad_wishes_are_refused_in_words() {
     let hybrid = HybridWish::new(&["2"], 3, &["split"]).unwrap_err();
     assert!(hybrid.contains("no kind of mode; there are input-split"), "{hybrid}");
     assert!(HybridWish::new(&["2"], 3, &["fixed"]).unwrap().check().is_err());
+}
+
+/// The way from a scheme to its teeth: real transmissions get back the teeth that gave their ratios.
+#[test]
+fn val_schemes_of_real_teeth_get_these_teeth_back() {
+    for known in KNOWN {
+        let base =
+            wish(known.sets, [known.elements().len(), known.closed, known.forward], ["0.5..6", "1.05..2.2", "1.2..7"]);
+        let wish = Wish { layout: known.layout(), ..base };
+        let scheme = known.rediscover(&Search::new(&wish).unwrap()).scheme.unwrap();
+        let text = scheme.to_design(&wish);
+        let design = Design::from_toml(&text).unwrap_or_else(|e| panic!("{}: {e:?}\n{text}", known.name));
+        let own = Some((known.name.to_owned(), scheme.to_toml()));
+        let started = std::time::Instant::now();
+        let answer = design.answer(&Request { own, ..Request::default() }, &Serial).unwrap();
+        println!("{}: {:?} {}", known.name, started.elapsed(), answer.completeness.statement);
+        assert!(answer.completeness.complete && answer.rows[0].error < 0.005, "{}", known.name);
+        let own = answer.own.unwrap();
+        assert!(own.fails.is_empty(), "{}: {:?}", known.name, own.fails);
+        assert!(own.row.states.iter().all(|(_, s)| s.ratio == s.target), "{}", known.name);
+        // Sorted by deviation: the first row has the ratios of the scheme exactly.
+        assert!(answer.rows[0].states.iter().all(|(_, s)| s.ratio == s.target), "{}", known.name);
+        // A row is the scheme with these teeth: the same elements in the same gears.
+        let train = Train::from_toml(&design.train_file(&answer.rows[0])).unwrap();
+        let (layout, _) = Layout::of_train(&train).unwrap();
+        assert_eq!(layout, scheme.layout, "{}", known.name);
+    }
+}
+
+/// The efficiency by which the search orders and limits, against the certified analysis of the train files.
+#[test]
+fn efficiencies_of_the_search_are_those_of_the_certified_solver() {
+    let lowest = |scheme: &Scheme| {
+        let all = scheme.gears.iter().chain(&scheme.reverse).map(|g| g.efficiency);
+        all.collect::<Option<Vec<f64>>>().map(|all| all.into_iter().fold(1.0, f64::min))
+    };
+    for (meshes, [elements, forward]) in [(["0.98", "0.99"], [4, 3]), (["0.9", "0.85"], [5, 4]), (["1", "1"], [5, 4])] {
+        let base = Wish { top: usize::MAX, ..wish(&TWO_SETS, [elements, 2, forward], TWO_SET_RANGES) };
+        let mesh_efficiencies = meshes.map(|t| t.parse().unwrap());
+        let wish = Wish { order: Order::Efficiency, mesh_efficiencies, ..base };
+        let mut answer = run(&wish);
+        answer.rate(&Serial);
+        let all: Vec<Option<f64>> = answer.schemes.iter().map(lowest).collect();
+        // Best first, by the numbers of the certified solver; what has none is last.
+        assert!(all.windows(2).all(|w| w[0].unwrap_or(0.0) >= w[1].unwrap_or(0.0) - 1e-9), "{meshes:?} {all:?}");
+        println!(
+            "{meshes:?}: {:?} to {:?}, {} without",
+            all[0],
+            all.iter().rfind(|e| e.is_some()),
+            all.iter().filter(|e| e.is_none()).count()
+        );
+        // A limit leaves those that reach it, counted by the certified solver; one that is just reached holds.
+        for at in [0, all.len() / 3, all.len() / 2] {
+            let Some(limit) = all[at] else { continue };
+            let limit = limit - 1e-9;
+            let left = all.iter().flatten().filter(|e| **e >= limit).count();
+            let min_efficiency = willis::exact::Rational::from_f64(limit);
+            let limited = run(&Wish { min_efficiency, ..wish.clone() });
+            assert_eq!(limited.found.schemes, left as u64, "{meshes:?} {limit}");
+        }
+    }
+    let all = Wish { min_efficiency: Some("0.999".parse().unwrap()), ..wish(&TWO_SETS, [5, 2, 4], TWO_SET_RANGES) };
+    let mut none = run(&all);
+    none.relax(&Serial);
+    let way = none.relaxations.iter().find(|r| r.change.starts_with("efficiencies of any size")).unwrap();
+    assert!(way.schemes == Some(350) && way.until.is_some_and(|e| e > 0.9 && e < 0.999), "{way:?}");
+    let wrong = Wish { min_efficiency: Some("1.2".parse().unwrap()), ..all };
+    assert!(wrong.check().unwrap_err().to_string().contains("an efficiency of"));
 }

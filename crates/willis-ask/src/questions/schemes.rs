@@ -23,7 +23,7 @@ use crate::{Attachment, Extra, File, Form, Given, Holds, Of, Question, Refusal};
 /// elements of one layout. In every gear as many elements are closed, from gear to gear one opens and one closes. The
 /// answer is complete, and says so: how many choices there are, what each rule leaves of them, and that there are no others.
 /// Where nothing is left it says which wish must give way, and how far. With --write a scheme becomes a train file that every
-/// other command takes.
+/// other command takes; with --format design-file too it becomes a design file, for which `willis design` finds the tooth numbers.
 ///
 /// With --hybrid it finds trains of an engine, an output and two motors whose clutches make the modes that are needed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -74,14 +74,23 @@ pub struct Schemes {
     /// No element carries more, per torque of the input and without losses: 4.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", allow_hyphen_values = true))]
     pub max_torque: Option<String>,
+    /// No gear has a lower efficiency when the input drives, by tooth friction alone: 0.95.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "EFFICIENCY", allow_hyphen_values = true))]
+    pub min_efficiency: Option<String>,
+    /// Efficiencies of the meshes of sun and planet, and of planet and ring, in every set. Default: 0.98,0.99.
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "EFFICIENCY", value_delimiter = ',', allow_hyphen_values = true)
+    )]
+    pub mesh_efficiency: Vec<String>,
     /// At most so many of the elements are brakes.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub max_brakes: Option<usize>,
     /// Only schemes that can be drawn with nested shafts and without a crossing.
     #[cfg_attr(feature = "clap", arg(long))]
     pub planar: bool,
-    /// Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest).
-    /// Default: found.
+    /// Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest),
+    /// efficiency (the largest of the worst gear). Default: found.
     #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER"))]
     pub order: Option<String>,
     /// How many are shown. Default: 10, or as many as --write names.
@@ -179,8 +188,14 @@ impl Question for Schemes {
     const NAME: &'static str = "schemes";
     const OF: Of = Of::Nothing;
     const TABLES: &'static [&'static str] = &["schemes", "gears", "waterfall", "hybrids", "modes"];
-    const FORMS: &'static [Form] =
-        &[Form { name: "train", endings: &["toml"], about: "the rows to write as train files" }];
+    const FORMS: &'static [Form] = &[
+        Form { name: "train", endings: &["toml"], about: "the rows to write as train files" },
+        Form {
+            name: file::DESIGN_FILE,
+            endings: &[],
+            about: "the rows to write as design files, with which `design` finds their teeth",
+        },
+    ];
     const EXTRAS: &'static [Extra] = &[
         #[cfg(feature = "pictures")]
         Extra { name: "plot", value: "FILE.svg", about: "Draw the first schemes side by side into this SVG file" },
@@ -215,8 +230,8 @@ impl Question for Schemes {
         if self.write.is_empty() { "text" } else { "train" }
     }
 
-    fn write(&self, answer: &SchemesAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
-        file::trains(answer, if self.write.is_empty() { &[1] } else { &self.write })
+    fn write(&self, answer: &SchemesAnswer, form: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+        file::rows(answer, form, if self.write.is_empty() { &[1] } else { &self.write })
     }
 
     fn extra(&self, answer: &SchemesAnswer, name: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {

@@ -36,8 +36,8 @@ fn solve(size: usize, mut a: Square, mut b: [f64; MAX_MOBILITY]) -> Option<[f64;
     Some(b)
 }
 
-/// The largest modulus of a shaft's speed and of a closed element's torque in a gear, per unit at the input.
-pub(crate) fn extremes(motion: &Motion, closed: &[[u8; 2]]) -> Option<[f64; 2]> {
+/// The speeds of all shafts, and the largest modulus of a closed element's torque, per unit at the input.
+pub(crate) fn speeds_and_torque(motion: &Motion, closed: &[[u8; 2]]) -> Option<([f64; MAX_SHAFTS], f64)> {
     let size = motion.mobility;
     // One scale for all, so that numbers stay near 1.
     let scale =
@@ -58,18 +58,16 @@ pub(crate) fn extremes(motion: &Motion, closed: &[[u8; 2]]) -> Option<[f64; 2]> 
     let mut one = [0.0; MAX_MOBILITY];
     one[0] = 1.0;
     let q = solve(size, rows, one)?;
-    let mut speed = 0.0_f64;
     let mut moving = [0.0; MAX_SHAFTS];
     for s in (0..motion.shafts).filter(|s| *s != usize::from(GROUND)) {
         moving[s] = float(motion.shaft(s as u8)).iter().zip(q).map(|(v, q)| v * q).sum();
-        speed = speed.max(moving[s].abs());
     }
     let input = rows[0];
     rows[0] = float(motion.shaft(1));
     let columns: Square = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
     let torques = solve(size, columns, input.map(|x| -x))?;
     let torque = torques[1..size].iter().fold(0.0_f64, |m, t| m.max(t.abs()));
-    Some([speed, torque])
+    Some((moving, torque))
 }
 
 /// The torques in a gear for torque 1 at the input, exactly: that of the output first, then those of the closed

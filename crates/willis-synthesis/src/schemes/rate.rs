@@ -7,7 +7,7 @@ use willis::{Selection, Train, analyze};
 
 use super::report::Schemes;
 use super::scheme::{Scheme, SchemeGear};
-use super::train_file::MESHES;
+use super::wish::decimal;
 
 /// Schemes that get their efficiencies where the work was stopped.
 const AT_LEAST: usize = 10;
@@ -63,7 +63,7 @@ impl Schemes {
         }
         let known = self.rediscovered.as_mut().and_then(|r| r.scheme.as_mut());
         if known.map(Scheme::rate).is_some() || !self.schemes.is_empty() {
-            let [external, internal] = MESHES;
+            let [external, internal] = self.wish.mesh_efficiencies.each_ref().map(decimal);
             self.assumptions.push(format!(
                 "efficiencies are those of {external} of sun and planet and {internal} of planet and ring in every set: \
                  tooth friction alone, without bearings, oil and open elements"

@@ -90,7 +90,8 @@ pub struct SchemeRelaxation {
     pub change: String,
     /// How many schemes there are then; absent where that was not searched.
     pub schemes: Option<u64>,
-    /// How far it must give way for the first of them: the smallest largest step, speed or torque that there is.
+    /// How far it must give way for the first of them: the smallest largest step, speed or torque, or the largest smallest
+    /// efficiency that there is.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<f64>,
     /// Why it was not searched.
@@ -173,7 +174,10 @@ impl Schemes {
         if wish.minimal {
             waterfall.push(stage("minimal", "no element can be left out".into(), tally.minimal));
         }
-        if wish.max_speed.is_some() || wish.max_torque.is_some() || wish.max_brakes.is_some() {
+        if wish.min_efficiency.is_some() {
+            let about = "speeds, torques, brakes and efficiencies within their limits";
+            waterfall.push(stage("limits", about.into(), tally.limits));
+        } else if wish.max_speed.is_some() || wish.max_torque.is_some() || wish.max_brakes.is_some() {
             waterfall.push(stage("limits", "speeds, torques and brakes within their limits".into(), tally.limits));
         }
         if wish.planar {
@@ -260,7 +264,7 @@ fn relaxation(wish: &Wish, work: &dyn Work, seconds: &mut f64) -> Result<(u64, O
     if harvest.done() < search.parts() {
         return Err("the search was stopped".into());
     }
-    let until = harvest.rows().first().filter(|_| wish.order != Order::Found).map(|row| row.key);
+    let until = harvest.rows().first().filter(|_| wish.order != Order::Found).map(|row| row.key.abs());
     Ok((harvest.tally().schemes, until))
 }
 
@@ -312,6 +316,10 @@ fn relaxed(wish: &Wish) -> Vec<(String, Wish)> {
     if let Some(limit) = &wish.max_torque {
         let change = format!("no limit on torques instead of {}", significant(limit));
         all.push((change, Wish { max_torque: None, order: Order::Torque, top: 1, ..base.clone() }));
+    }
+    if let Some(limit) = &wish.min_efficiency {
+        let change = format!("efficiencies of any size instead of {} and more", significant(limit));
+        all.push((change, Wish { min_efficiency: None, order: Order::Efficiency, top: 1, ..base.clone() }));
     }
     if let Some(most) = wish.max_brakes {
         all.push((format!("any number of brakes instead of {most}"), Wish { max_brakes: None, ..base.clone() }));

@@ -9,7 +9,7 @@ use super::layout::{GROUND, Layout, shaft_digit};
 use super::measure;
 use super::motion;
 use super::planar;
-use super::wish::{SetRatio, Wish};
+use super::wish::{SetRatio, Wish, usual_meshes};
 
 /// A shaft of a scheme.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -106,6 +106,9 @@ pub struct Scheme {
     pub layout: Layout,
     /// The tooth ratio of every set.
     pub sets: Vec<SetRatio>,
+    /// Efficiencies of the meshes of sun and planet, and of planet and ring, in every set.
+    #[serde(default = "usual_meshes")]
+    pub mesh_efficiencies: [Rational; 2],
     /// The shafts, in the order of the layout's digits.
     pub shafts: Vec<SchemeShaft>,
     /// Brakes and clutches.
@@ -332,6 +335,7 @@ impl Scheme {
             known: None,
             layout,
             sets: wish.sets.clone(),
+            mesh_efficiencies: wish.mesh_efficiencies.clone(),
             shafts: shafts.collect(),
             brakes: elements.iter().filter(|e| e.contains(&GROUND)).count(),
             elements: own_elements,

@@ -7,6 +7,7 @@ use willis::exact::Rational;
 use willis::work::{Effort, Work};
 
 use super::choose::{Chooser, Found, Goal, has_spare};
+use super::efficiency::efficiency;
 use super::harvest::{Harvest, Row, Tally, apart, fits, missing, parse, spoilt};
 use super::layout::{GROUND, INPUT, Layout, Layouts, MAX_SHAFTS, OUTPUT, Prefix, count_layouts};
 use super::measure;
@@ -55,6 +56,8 @@ pub struct Search {
     parts: Vec<Prefix>,
     /// Other orders of the sets, in which those with one tooth ratio are exchanged.
     orders: Vec<Vec<usize>>,
+    /// The tooth ratios, and the efficiency of the meshes of a set in a row.
+    losses: (Vec<f64>, f64),
 }
 
 impl Harvest {
@@ -133,7 +136,9 @@ impl Search {
             parts.retain(|p| p.holds(layout));
         }
         let orders = orders(&ratios);
-        Ok(Self { wish: wish.clone(), ratios, teeth, goal, space, parts, orders })
+        let eta = wish.mesh_efficiencies.iter().map(Rational::to_f64).product();
+        let losses = (ratios.iter().map(Rational::to_f64).collect(), eta);
+        Ok(Self { wish: wish.clone(), ratios, teeth, goal, space, parts, orders, losses })
     }
 
     /// The wish.
@@ -411,18 +416,22 @@ impl Search {
             Order::Step => found.chain.windows(2).map(|w| ratio(&w[0]) / ratio(&w[1])).fold(1.0, f64::max),
             _ => 0.0,
         };
-        if wish.max_speed.is_none() && wish.max_torque.is_none() && !matches!(wish.order, Order::Speed | Order::Torque)
-        {
+        let with_losses = wish.min_efficiency.is_some() || wish.order == Order::Efficiency;
+        let with_limits = wish.max_speed.is_some() || wish.max_torque.is_some();
+        if !with_losses && !with_limits && !matches!(wish.order, Order::Speed | Order::Torque) {
             return Some(key);
         }
         let reverse = (0..found.states.len()).filter(|s| table.kind(found.states[*s]) == Kind::Reverse);
         let gears = found.chain.iter().map(|s| usize::from(*s)).chain(reverse.take(self.goal.reverse));
         let mut worst = [0.0_f64; 2];
+        let (k, eta) = (&self.losses.0, self.losses.1);
+        let mut least = 1.0_f64;
         for gear in gears {
             let mask = self.goal.masks()[gear];
             let closed: Vec<[u8; 2]> =
                 (0..elements.len()).filter(|e| mask >> e & 1 == 1).map(|e| elements[e]).collect();
-            let own = measure::extremes(motion, &closed)?;
+            let (speeds, torque) = measure::speeds_and_torque(motion, &closed)?;
+            let own = [speeds.iter().fold(0.0_f64, |m, w| m.max(w.abs())), torque];
             for (kind, limit) in [&wish.max_speed, &wish.max_torque].into_iter().enumerate() {
                 worst[kind] = worst[kind].max(own[kind]);
                 let Some(limit) = limit else { continue };
@@ -436,14 +445,25 @@ impl Search {
                     return None;
                 }
             }
+            if with_losses {
+                // A gear without an efficiency of its own is the worst of all; a wish for one excludes it.
+                least = least.min(efficiency(layout, k, eta, &speeds, &closed).unwrap_or(0.0));
+                if wish.min_efficiency.as_ref().is_some_and(|min| least < min.to_f64() - ROUNDING) {
+                    return None;
+                }
+            }
         }
         Some(match wish.order {
             Order::Speed => worst[0],
             Order::Torque => worst[1],
+            Order::Efficiency => -least,
             _ => key,
         })
     }
 }
+
+/// Rounding of an efficiency: one on the limit is not below it.
+const ROUNDING: f64 = 1e-12;
 
 /// What is called with elements in the order of their points, and with the same, sorted.
 type Visit<'a> = dyn FnMut(&[[u8; 2]], &[[u8; 2]]) + 'a;
@@ -661,7 +681,8 @@ mod tests {
             // Power in and power out are equal.
             assert_eq!(&torques[0] * &speeds[1], Rational::from(-1));
             let most = |all: &[Rational]| all.iter().map(|x| x.to_f64().abs()).fold(0.0, f64::max);
-            let [speed, torque] = measure::extremes(&motion, &closed).unwrap();
+            let (moving, torque) = measure::speeds_and_torque(&motion, &closed).unwrap();
+            let speed = moving.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
             assert!((speed - most(&speeds)).abs() < 1e-12 && (torque - most(&torques[1..])).abs() < 1e-12);
         }
     }

@@ -4,11 +4,7 @@ use willis::exact::Rational;
 use willis::train::ShiftElementKind;
 
 use super::scheme::Scheme;
-use super::wish::SetRatio;
-
-/// Efficiencies of the meshes of sun and planet, and of planet and ring, that train files of schemes have: usual ones, where
-/// nothing is known of the teeth.
-pub(super) const MESHES: [&str; 2] = ["0.98", "0.99"];
+use super::wish::{SetRatio, decimal};
 
 /// Teeth of sun and ring: those that were given, or the fewest that have the ratio, a sun of 20 teeth or more, and a
 /// planet of whole teeth between them; fewer where willis reads no tooth number so large.
@@ -32,8 +28,8 @@ pub(super) fn quoted(names: impl IntoIterator<Item = impl AsRef<str>>) -> String
     format!("[{}]", all.join(", "))
 }
 
-/// A set of a train file: its number, its teeth, the members of sun, ring and carrier.
-pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String]) -> String {
+/// A set of a train file: its number, its teeth, the members of sun, ring and carrier, the efficiencies of its meshes.
+pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String], meshes: &[Rational; 2]) -> String {
     let [sun, ring] = teeth(set);
     let member = |k: usize| on.get(k).map_or("", String::as_str);
     format!(
@@ -43,16 +39,25 @@ pub(super) fn set_lines(n: usize, set: &SetRatio, on: &[String]) -> String {
         member(0),
         member(1),
         member(2),
-        MESHES[0],
-        MESHES[1],
+        decimal(&meshes[0]),
+        decimal(&meshes[1]),
     )
 }
 
 impl Scheme {
     /// The scheme as a complete train file: sets, shift elements, one state for every gear and reverse gear. Its teeth
-    /// are those of the wish, or small numbers with the same ratios; mesh efficiencies are 0.98 of sun and planet and 0.99 of
-    /// planet and ring.
+    /// are those of the wish, or small numbers with the same ratios; mesh efficiencies are
+    /// those of the wish.
     pub fn to_toml(&self) -> String {
+        let mut text = self.head();
+        for (n, set) in self.sets.iter().enumerate() {
+            text += &set_lines(n + 1, set, &self.members(n), &self.mesh_efficiencies);
+        }
+        text + &self.elements_and_states()
+    }
+
+    /// What a file of the scheme begins with.
+    pub(super) fn head(&self) -> String {
         let mut text = String::new();
         let name = self.known.clone().unwrap_or_else(|| format!("scheme {}", self.id));
         let ratios: Vec<String> = self.gears.iter().chain(&self.reverse).map(|g| format!("{:.3}", g.value)).collect();
@@ -63,15 +68,23 @@ impl Scheme {
             "source = \"Found by a search over all shift schemes: layout {}. Mesh efficiencies assumed.\"\n\n",
             self.id
         );
-        text += &format!("members = {}\nterminals = [\"input\", \"output\"]\n", quoted(turning));
-        let on = |member: String| match self.shafts.iter().find(|s| s.members.contains(&member)) {
-            Some(shaft) if shaft.name != "housing" => shaft.name.clone(),
-            _ => "frame".to_owned(),
-        };
-        for (n, set) in self.sets.iter().enumerate() {
-            let n = n + 1;
-            text += &set_lines(n, set, &["s", "r", "c"].map(|part| on(format!("{part}{n}"))));
-        }
+        text + &format!("members = {}\nterminals = [\"input\", \"output\"]\n", quoted(turning))
+    }
+
+    /// The members of sun, ring and carrier of a set, counted from 0.
+    pub(super) fn members(&self, set: usize) -> [String; 3] {
+        ["s", "r", "c"].map(|part| {
+            let member = format!("{part}{}", set + 1);
+            match self.shafts.iter().find(|s| s.members.contains(&member)) {
+                Some(shaft) if shaft.name != "housing" => shaft.name.clone(),
+                _ => "frame".to_owned(),
+            }
+        })
+    }
+
+    /// Clutches and brakes, and what is closed in each gear.
+    pub(super) fn elements_and_states(&self) -> String {
+        let mut text = String::new();
         for element in &self.elements {
             let kind = if element.kind == ShiftElementKind::Brake { "brake" } else { "clutch" };
             let members = quoted(element.joins.iter().filter(|s| *s != "housing"));

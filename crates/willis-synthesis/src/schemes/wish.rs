@@ -165,6 +165,8 @@ pub enum Order {
     Speed,
     /// The smallest largest step.
     Step,
+    /// The largest smallest efficiency of a gear, with the mesh efficiencies of the wish.
+    Efficiency,
 }
 
 impl FromStr for Order {
@@ -172,7 +174,7 @@ impl FromStr for Order {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let all = [("found", Self::Found), ("spread", Self::Spread), ("torque", Self::Torque), ("speed", Self::Speed)];
-        let all = all.into_iter().chain([("step", Self::Step)]);
+        let all = all.into_iter().chain([("step", Self::Step), ("efficiency", Self::Efficiency)]);
         let named = all.clone().find(|(name, _)| *name == text).map(|(_, order)| order);
         let names: Vec<&str> = all.map(|(name, _)| name).collect();
         named.ok_or_else(|| format!("`{text}` is no order; there are {}", names.join(", ")))
@@ -187,6 +189,7 @@ impl fmt::Display for Order {
             Self::Torque => "torque",
             Self::Speed => "speed",
             Self::Step => "step",
+            Self::Efficiency => "efficiency",
         })
     }
 }
@@ -206,6 +209,8 @@ impl fmt::Display for Order {
 /// * with `progressive`, no step is larger than the one before it;
 /// * with `max_speed` and `max_torque`, in the gears of the chain and in reverse no shaft turns faster and no closed
 ///   element carries more, per speed and torque of the input, without losses;
+/// * with `min_efficiency`, each of these gears has one efficiency when the input drives, not below it, with
+///   `mesh_efficiencies` in every set;
 /// * with `planar`, the scheme can be drawn with nested shafts without a crossing.
 ///
 /// # Example
@@ -259,6 +264,12 @@ pub struct Wish {
     /// The largest torque of an element, per torque of the input.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_torque: Option<Rational>,
+    /// The least efficiency of a gear when the input drives.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_efficiency: Option<Rational>,
+    /// Efficiencies of the meshes of sun and planet, and of planet and ring, in every set, from above 0 to 1.
+    #[serde(default = "usual_meshes")]
+    pub mesh_efficiencies: [Rational; 2],
     /// The most brakes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_brakes: Option<usize>,
@@ -287,6 +298,17 @@ fn ten() -> usize {
     10
 }
 
+/// Efficiencies of the meshes of sun and planet, and of planet and ring, where nothing is said of them: usual ones, those of
+/// the examples.
+pub(super) fn usual_meshes() -> [Rational; 2] {
+    [Rational::new(98, 100), Rational::new(99, 100)]
+}
+
+/// A number as a decimal that a train file takes.
+pub(super) fn decimal(x: &Rational) -> String {
+    x.to_f64().to_string()
+}
+
 fn yes() -> bool {
     true
 }
@@ -311,6 +333,8 @@ impl Wish {
             minimal: true,
             max_speed: None,
             max_torque: None,
+            min_efficiency: None,
+            mesh_efficiencies: usual_meshes(),
             max_brakes: None,
             planar: false,
             layout: None,
@@ -417,6 +441,15 @@ impl Wish {
         for (place, limit) in [("max_speed", &self.max_speed), ("max_torque", &self.max_torque)] {
             if limit.as_ref().is_some_and(|l| l.sign() <= 0) {
                 say(Code::OutOfRange, place, "the limit is not positive".into(), "a limit is a modulus".into());
+            }
+        }
+        let is_efficiency = |x: &Rational| x.sign() > 0 && *x <= Rational::ONE;
+        for (place, x) in (self.mesh_efficiencies.iter().map(|x| ("mesh_efficiencies", x)))
+            .chain(self.min_efficiency.iter().map(|x| ("min_efficiency", x)))
+        {
+            if !is_efficiency(x) {
+                let message = format!("an efficiency of {x} is not above 0 and at most 1");
+                say(Code::OutOfRange, place, message, "give a part of 1, as in 0.98".into());
             }
         }
         if self.sample == 0 {

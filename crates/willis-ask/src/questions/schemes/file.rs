@@ -5,8 +5,17 @@ use willis::diagnostic::{Code, Diagnostic};
 use super::SchemesAnswer;
 use crate::{File, Refusal};
 
-/// The train files of these rows, counted from 1.
-pub fn trains(answer: &SchemesAnswer, rows: &[usize]) -> Result<Vec<File>, Refusal> {
+/// The form in which rows of schemes are design files.
+pub const DESIGN_FILE: &str = "design-file";
+
+/// The train files of these rows, counted from 1; or their design files.
+pub fn rows(answer: &SchemesAnswer, form: &str, rows: &[usize]) -> Result<Vec<File>, Refusal> {
+    let is_design = form == DESIGN_FILE;
+    if is_design && matches!(answer, SchemesAnswer::Hybrids(_)) {
+        let message = "the modes of a hybrid are no gears with ratios, for which teeth could be found";
+        let hint = "write the hybrid as a train, and design it with the ratios that its gears shall have";
+        return Err(Diagnostic::new(Code::Conflict, "", message).hint(hint).into());
+    }
     let (name, shown) = match answer {
         SchemesAnswer::Schemes(found) => ("scheme", found.all.schemes.len()),
         SchemesAnswer::Hybrids(found) => ("hybrid", found.all.designs.len()),
@@ -29,9 +38,16 @@ pub fn trains(answer: &SchemesAnswer, rows: &[usize]) -> Result<Vec<File>, Refus
         SchemesAnswer::Schemes(found) => (found.all.schemes[row - 1].to_toml(), &found.all.schemes[row - 1].id),
         SchemesAnswer::Hybrids(found) => (found.all.designs[row - 1].to_toml(), &found.all.designs[row - 1].id),
     };
-    let file = |row: usize| {
-        let (text, id) = one(row);
-        File { about: format!("{name} {row}, {id}"), ..File::text(format!("{name}-{row}.toml"), text) }
+    let file = |row: usize| match answer {
+        SchemesAnswer::Schemes(found) if is_design => {
+            let scheme = &found.all.schemes[row - 1];
+            let about = format!("the search for the teeth of scheme {row}, {}", scheme.id);
+            File { about, ..File::text(format!("{name}-{row}-design.toml"), scheme.to_design(&found.all.wish)) }
+        }
+        _ => {
+            let (text, id) = one(row);
+            File { about: format!("{name} {row}, {id}"), ..File::text(format!("{name}-{row}.toml"), text) }
+        }
     };
     Ok(rows.into_iter().map(file).collect())
 }

@@ -101,6 +101,8 @@ impl Schemes {
             ("not_minimal", self.not_minimal),
             ("max_speed", self.max_speed.is_some()),
             ("max_torque", self.max_torque.is_some()),
+            ("min_efficiency", self.min_efficiency.is_some()),
+            ("mesh_efficiency", !self.mesh_efficiency.is_empty()),
             ("max_brakes", self.max_brakes.is_some()),
             ("planar", self.planar),
             ("order", self.order.is_some()),
@@ -315,6 +317,21 @@ impl Schemes {
         let mut limit = |field, text: &Option<String>| -> Option<Rational> { wrong.read(field, text.as_ref(), FACTOR) };
         let max_speed = limit("max_speed", &self.max_speed);
         let max_torque = limit("max_torque", &self.max_torque);
+        const PART: &str = "give a part of 1: 0.98 or 49/50";
+        let min_efficiency = wrong.read("min_efficiency", self.min_efficiency.as_ref(), PART);
+        let mut meshes =
+            self.mesh_efficiency.iter().take(3).map(|text| wrong.read("mesh_efficiency", Some(text), PART));
+        let mesh_efficiencies: Option<[Rational; 2]> = match [meshes.next(), meshes.next(), meshes.next()] {
+            [None, ..] => Some([Rational::new(98, 100), Rational::new(99, 100)]),
+            [Some(both), None, _] => both.map(|x: Rational| [x.clone(), x]),
+            [Some(external), Some(internal), None] => external.zip(internal).map(|(a, b)| [a, b]),
+            _ => {
+                drop(meshes);
+                let hint = "give one for both, or two: that of sun and planet, and that of planet and ring";
+                wrong.say(Code::OutOfRange, "`mesh_efficiency` has more than two entries", hint);
+                None
+            }
+        };
         let order: Option<Order> = wrong.read("order", self.order.as_ref(), "leave it out for the order of the names");
         let reverse = self.reverse.unwrap_or(1);
         if reverse == 0 && self.reverse_range.is_some() {
@@ -334,6 +351,9 @@ impl Schemes {
             minimal: !self.not_minimal,
             max_speed,
             max_torque,
+            min_efficiency,
+            // What cannot be read has been spoken of.
+            mesh_efficiencies: mesh_efficiencies.unwrap_or([Rational::ONE, Rational::ONE]),
             max_brakes: self.max_brakes,
             planar: self.planar,
             layout: layout.map(|(own, _)| *own),

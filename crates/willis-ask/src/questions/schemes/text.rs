@@ -93,6 +93,7 @@ fn limits(wish: &Wish) -> String {
         (!wish.minimal).then(|| "elements that can be left out allowed".to_owned()),
         wish.max_speed.as_ref().map(|x| format!("speeds up to {} of the input", significant(x.to_f64(), 5))),
         wish.max_torque.as_ref().map(|x| format!("torques up to {} of the input", significant(x.to_f64(), 5))),
+        wish.min_efficiency.as_ref().map(|x| format!("efficiencies of {} and more", significant(x.to_f64(), 5))),
         wish.max_brakes.map(|n| format!("at most {}", plural(n, "brake", "brakes"))),
         wish.planar.then(|| "drawn without a crossing".to_owned()),
     ];
