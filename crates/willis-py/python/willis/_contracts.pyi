@@ -2674,11 +2674,11 @@ class SensitivityQuantitySensitivity(Record):
     def together(self) -> list[str]:
         """Quantities of the same teeth that move with it in proportion, because alone it would contradict them."""
     @property
-    def step(self) -> Literal["percent", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
+    def step(self) -> Literal["percent", "percent_less", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
         """The step for which changes are told."""
     @property
     def step_size(self) -> float:
-        """That step, SI."""
+        """That step, SI; negative where it is one to less."""
     @property
     def efficiency_derivative(self) -> float | None:
         """``dη/dq``, over the SI unit of the value."""
@@ -3589,6 +3589,51 @@ class RegimesAssignmentReport(Record):
     def reach(self) -> Literal["reached", "reached where friction turns a torque round, and nowhere else", "only because friction turns a torque round", "reached: friction takes everything", "cannot be reached: friction never takes everything", "cannot be reached: friction prevents it (without losses it exists)", "cannot be reached: speeds and torques never have these signs together"]:
         """How it is reached, or why not."""
 
+class RegimesNobasis(Record):
+    """No operation that says so has exactly one equilibrium; these were tried."""
+
+class RegimesEfficiencyBasis(Record):
+    """Where the efficiencies of meshes come from whose losses laws compute.
+
+    # Example `````` use willis::regimes::{RegimeSelection, regimes}; use willis::train::Train;
+
+    let text = include_str!("../../../../examples/fva-planetary-stage.toml"); let all =
+    regimes(&Train::from_toml(text)?, &RegimeSelection::default())?; let basis =
+    all.states[0].efficiency_basis.as_ref().unwrap(); assert!(basis.is_at_load());
+    assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(), willis::Diagnostics>(()) ``````"""
+    @property
+    def operation(self) -> str | None:
+        """The operation of the file whose load it is; absent where the request gives the point, and of nominal
+        efficiencies."""
+    @property
+    def speeds_rad_s(self) -> Named[float]:
+        """Speed of each member that is loaded from outside there, rad/s. Nothing of nominal efficiencies."""
+    @property
+    def speeds(self) -> Named[float]: ...
+    @property
+    def torques_n_m(self) -> Named[float]:
+        """Torque on each of them, N m."""
+    @property
+    def torques(self) -> Named[float]: ...
+    @property
+    def temperature_k(self) -> float | None:
+        """Oil temperature there, K: prescribed, of the heat balance, or of the oil."""
+    @property
+    def temperature(self) -> float | None: ...
+    @property
+    def efficiencies(self) -> Named[float]:
+        """Efficiency of each mesh whose losses are computed, with what bearings lose by its load; to six decimals, the
+        same whichever gear drives."""
+    @property
+    def nominal(self) -> list[str]:
+        """Meshes that carry nothing or do not move there: theirs are nominal."""
+    @property
+    def reason(self) -> Literal["no-operation"] | RegimesNobasis | None:
+        """Why all are nominal."""
+    @property
+    def nominal_friction(self) -> float:
+        """The coefficient of friction that nominal efficiencies are made with."""
+
 class RegimesLinkReport(Record):
     """A way for power beside the gears."""
     @property
@@ -3645,6 +3690,9 @@ class RegimesAtlas(Record):
     @property
     def assignments(self) -> list[RegimesAssignmentReport]:
         """Every assignment of inputs and outputs, and whether it can be reached."""
+    @property
+    def efficiency_basis(self) -> RegimesEfficiencyBasis | None:
+        """Where mesh efficiencies come from whose losses laws compute; absent where all are given."""
     @property
     def lossless(self) -> list[str]:
         """Elements without loss: it does not matter who drives them."""
@@ -3757,6 +3805,9 @@ class RegimesAnswer(Answer):
     @property
     def regimes(self) -> int:
         """Number of regimes in all ranges."""
+    @property
+    def efficiency_basis(self) -> RegimesEfficiencyBasis | None:
+        """Where mesh efficiencies come from whose losses laws compute; absent where all are given."""
 
 class FormulaWritten(Record):
     """An expression, written twice."""
@@ -3808,6 +3859,51 @@ class FormulaOneCondition(Record):
     @property
     def ensures(self) -> str:
         """What it ensures, in words."""
+
+class FormulaNobasis(Record):
+    """No operation that says so has exactly one equilibrium; these were tried."""
+
+class FormulaEfficiencyBasis(Record):
+    """Where the efficiencies of meshes come from whose losses laws compute.
+
+    # Example `````` use willis::regimes::{RegimeSelection, regimes}; use willis::train::Train;
+
+    let text = include_str!("../../../../examples/fva-planetary-stage.toml"); let all =
+    regimes(&Train::from_toml(text)?, &RegimeSelection::default())?; let basis =
+    all.states[0].efficiency_basis.as_ref().unwrap(); assert!(basis.is_at_load());
+    assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(), willis::Diagnostics>(()) ``````"""
+    @property
+    def operation(self) -> str | None:
+        """The operation of the file whose load it is; absent where the request gives the point, and of nominal
+        efficiencies."""
+    @property
+    def speeds_rad_s(self) -> Named[float]:
+        """Speed of each member that is loaded from outside there, rad/s. Nothing of nominal efficiencies."""
+    @property
+    def speeds(self) -> Named[float]: ...
+    @property
+    def torques_n_m(self) -> Named[float]:
+        """Torque on each of them, N m."""
+    @property
+    def torques(self) -> Named[float]: ...
+    @property
+    def temperature_k(self) -> float | None:
+        """Oil temperature there, K: prescribed, of the heat balance, or of the oil."""
+    @property
+    def temperature(self) -> float | None: ...
+    @property
+    def efficiencies(self) -> Named[float]:
+        """Efficiency of each mesh whose losses are computed, with what bearings lose by its load; to six decimals, the
+        same whichever gear drives."""
+    @property
+    def nominal(self) -> list[str]:
+        """Meshes that carry nothing or do not move there: theirs are nominal."""
+    @property
+    def reason(self) -> Literal["no-operation"] | FormulaNobasis | None:
+        """Why all are nominal."""
+    @property
+    def nominal_friction(self) -> float:
+        """The coefficient of friction that nominal efficiencies are made with."""
 
 class FormulaOneDerivative(Record):
     """A derivative of the efficiency."""
@@ -3865,6 +3961,9 @@ class FormulaOneFormula(Record):
     @property
     def conditions(self) -> list[FormulaOneCondition]:
         """Expressions that are positive where the formula holds, and nowhere else."""
+    @property
+    def efficiency_basis(self) -> FormulaEfficiencyBasis | None:
+        """Where mesh efficiencies come from whose losses laws compute; absent where all are given."""
     @property
     def derivatives(self) -> list[FormulaOneDerivative]:
         """Derivatives of the efficiency, where they were asked for; the one that costs most first."""
@@ -4001,6 +4100,51 @@ class LocateLocated(Record):
         """What that leaves open, where [``analyze``](crate::analyze) tells it. The torques above are those in which
         these meshes lose nothing."""
 
+class LocateNobasis(Record):
+    """No operation that says so has exactly one equilibrium; these were tried."""
+
+class LocateEfficiencyBasis(Record):
+    """Where the efficiencies of meshes come from whose losses laws compute.
+
+    # Example `````` use willis::regimes::{RegimeSelection, regimes}; use willis::train::Train;
+
+    let text = include_str!("../../../../examples/fva-planetary-stage.toml"); let all =
+    regimes(&Train::from_toml(text)?, &RegimeSelection::default())?; let basis =
+    all.states[0].efficiency_basis.as_ref().unwrap(); assert!(basis.is_at_load());
+    assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(), willis::Diagnostics>(()) ``````"""
+    @property
+    def operation(self) -> str | None:
+        """The operation of the file whose load it is; absent where the request gives the point, and of nominal
+        efficiencies."""
+    @property
+    def speeds_rad_s(self) -> Named[float]:
+        """Speed of each member that is loaded from outside there, rad/s. Nothing of nominal efficiencies."""
+    @property
+    def speeds(self) -> Named[float]: ...
+    @property
+    def torques_n_m(self) -> Named[float]:
+        """Torque on each of them, N m."""
+    @property
+    def torques(self) -> Named[float]: ...
+    @property
+    def temperature_k(self) -> float | None:
+        """Oil temperature there, K: prescribed, of the heat balance, or of the oil."""
+    @property
+    def temperature(self) -> float | None: ...
+    @property
+    def efficiencies(self) -> Named[float]:
+        """Efficiency of each mesh whose losses are computed, with what bearings lose by its load; to six decimals, the
+        same whichever gear drives."""
+    @property
+    def nominal(self) -> list[str]:
+        """Meshes that carry nothing or do not move there: theirs are nominal."""
+    @property
+    def reason(self) -> Literal["no-operation"] | LocateNobasis | None:
+        """Why all are nominal."""
+    @property
+    def nominal_friction(self) -> float:
+        """The coefficient of friction that nominal efficiencies are made with."""
+
 class LocateAnswer(Answer):
     """Where an operating point lies."""
     @property
@@ -4035,6 +4179,10 @@ class LocateAnswer(Answer):
     @property
     def regimes(self) -> list[LocateLocated]:
         """The equilibria; more than one where friction leaves a choice."""
+    @property
+    def efficiency_basis(self) -> LocateEfficiencyBasis | None:
+        """Where mesh efficiencies come from whose losses laws compute: this point, where it has exactly one
+        equilibrium."""
 
 class SimulateHappening(Record):
     """What happened to some elements at once."""
@@ -4511,6 +4659,9 @@ class SchemesScheme(Record):
     def sets(self) -> list[str]:
         """The tooth ratio of every set."""
     @property
+    def mesh_efficiencies(self) -> list[str]:
+        """Efficiencies of the meshes of sun and planet, and of planet and ring, in every set."""
+    @property
     def shafts(self) -> list[SchemesSchemeShaft]:
         """The shafts, in the order of the layout's digits."""
     @property
@@ -4552,7 +4703,8 @@ class SchemesSchemeRelaxation(Record):
         """How many schemes there are then; absent where that was not searched."""
     @property
     def until(self) -> float | None:
-        """How far it must give way for the first of them: the smallest largest step, speed or torque that there is."""
+        """How far it must give way for the first of them: the smallest largest step, speed or torque, or the largest
+        smallest efficiency that there is."""
     @property
     def reason(self) -> str | None:
         """Why it was not searched."""
@@ -7027,7 +7179,7 @@ class DrawTornadoBar(Record):
     def assumed(self) -> bool:
         """Whether it is not given but taken."""
     @property
-    def step(self) -> Literal["percent", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
+    def step(self) -> Literal["percent", "percent_less", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
         """The step up."""
     @property
     def loss_change_w(self) -> float:

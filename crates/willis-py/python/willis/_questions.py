@@ -1219,15 +1219,15 @@ def design(
     tolerance
         Of ``kind`` and ``like``: how far a ratio may be off, as a part. Default: 0.01.
     ring
-        Of ``kind``: the largest reference diameter of a ring: 90mm.
+        Of ``kind`` and ``like``: the largest reference diameter of a ring: 90mm.
     module
         Of ``kind``: modules that are allowed: 0.5mm,0.6mm. Default where the ring is limited: those of DIN 780 to 8 mm.
     planets
         Of ``kind``: numbers of planets. Default: 3..5.
     forward
-        Of ``kind``: the least efficiency from input to output.
+        Of ``kind`` and ``like``: the least efficiency from input to output.
     backward
-        Of ``kind``: the least efficiency from output to input: a drive that can be driven back.
+        Of ``kind`` and ``like``: the least efficiency from output to input: a drive that can be driven back.
     top
         Show so many rows. Default: 20.
     sort
@@ -1282,6 +1282,8 @@ def schemes(
     not_minimal: bool | None = None,
     max_speed: str | None = None,
     max_torque: str | None = None,
+    min_efficiency: str | None = None,
+    mesh_efficiency: Sequence[str] | str | None = None,
     max_brakes: int | None = None,
     planar: bool | None = None,
     order: str | None = None,
@@ -1305,7 +1307,8 @@ def schemes(
     ``layout`` only the elements of one layout. In every gear as many elements are closed, from gear to gear one
     opens and one closes. The answer is complete, and says so: how many choices there are, what each rule leaves of
     them, and that there are no others. Where nothing is left it says which wish must give way, and how far. With
-    ``write`` a scheme becomes a train file that every other command takes.
+    ``write`` a scheme becomes a train file that every other command takes; with ``format`` design-file too it
+    becomes a design file, for which ``willis design`` finds the tooth numbers.
 
     With ``hybrid`` it finds trains of an engine, an output and two motors whose clutches make the modes that are
     needed.
@@ -1342,13 +1345,17 @@ def schemes(
         No shaft turns faster, per speed of the input: 3.5.
     max_torque
         No element carries more, per torque of the input and without losses: 4.
+    min_efficiency
+        No gear has a lower efficiency when the input drives, by tooth friction alone: 0.95.
+    mesh_efficiency
+        Efficiencies of the meshes of sun and planet, and of planet and ring, in every set. Default: 0.98,0.99.
     max_brakes
         At most so many of the elements are brakes.
     planar
         Only schemes that can be drawn with nested shafts and without a crossing.
     order
-        Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest).
-        Default: found.
+        Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest),
+        efficiency (the largest of the worst gear). Default: found.
     top
         How many are shown. Default: 10, or as many as ``write`` names.
     sample
@@ -1386,7 +1393,7 @@ def schemes(
         _ask(
             "schemes",
             [],
-            {"sets": sets, "k": k, "layout": layout, "elements": elements, "closed": closed, "forward": forward, "reverse": reverse, "forward_range": forward_range, "reverse_range": reverse_range, "step": step, "progressive": progressive, "not_minimal": not_minimal, "max_speed": max_speed, "max_torque": max_torque, "max_brakes": max_brakes, "planar": planar, "order": order, "top": top, "sample": sample, "rediscover": rediscover, "hybrid": hybrid, "clutches": clutches, "need": need, "mobility": mobility, "write": write, "shard": shard, "resume": resume},
+            {"sets": sets, "k": k, "layout": layout, "elements": elements, "closed": closed, "forward": forward, "reverse": reverse, "forward_range": forward_range, "reverse_range": reverse_range, "step": step, "progressive": progressive, "not_minimal": not_minimal, "max_speed": max_speed, "max_torque": max_torque, "min_efficiency": min_efficiency, "mesh_efficiency": mesh_efficiency, "max_brakes": max_brakes, "planar": planar, "order": order, "top": top, "sample": sample, "rediscover": rediscover, "hybrid": hybrid, "clutches": clutches, "need": need, "mobility": mobility, "write": write, "shard": shard, "resume": resume},
             threads=threads,
             yes=yes,
             progress=progress,
