@@ -163,7 +163,9 @@ fn fzg(report: &mut Report) {
         "FZG",
         "Other programs: pairs of the FZG machine (GEARpie)",
         &["Loss is input power times Schlenk's coefficient times the loss factor. C14 and H501 were printed with the \
-             stiffness sharing of the load (law `load_sharing = \"stiffness\"` here; its ramp is not published)."],
+             stiffness sharing of the load (law `load_sharing = \"stiffness\"` here; its ramp is not published). Of the \
+             relieved C-gear the length of the relief was not at hand: here it reaches down to single contact, so that its \
+             row shows that the size is right, not that the number is."],
     );
     let pair = |text: &str, sharing: Option<&str>| {
         let mut file = train(text);

@@ -297,7 +297,8 @@ fn compare(context: &Context) -> Result<(), String> {
     if stale.is_empty() { Ok(()) } else { Err(format!("{}: run `cargo xtask generate`", stale.join("; "))) }
 }
 
-/// Builds the optimised program.
+/// Builds the optimised program, and with it the Python package: alone each has other features of the same dependencies, so that
+/// everything above them would be compiled twice.
 pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli -p willis-py";
 
 /// What can be built before it is needed.

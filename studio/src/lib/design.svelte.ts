@@ -4,6 +4,7 @@ import { Refused, Stopped, ask, cancel } from "./ask.svelte";
 import { plain } from "./numbers";
 import { NOTHING, store } from "./store.svelte";
 import type { Doc, Refusal } from "./types";
+import { newTrain } from "./willis";
 
 export interface Row {
   number: number;
@@ -84,6 +85,8 @@ class Design {
   of = $state.raw("");
   /** The row that is shown as the train of the page. */
   shown = $state<number | null>(null);
+  /** The row whose train is being made: the search comes to it once more. */
+  opening = $state<number | null>(null);
 
   #wanted: { key: string; request: Request } | null = null;
   #running = false;
@@ -136,6 +139,7 @@ class Design {
         this.stopped = "";
         this.took = performance.now() - this.#began;
         this.shown = null;
+        this.opening = null;
       } catch (why) {
         if (why instanceof Refused) this.refusal = why.refusal;
         else if (!(why instanceof Stopped && why.why === "overtaken")) this.stopped = why instanceof Error ? why.message : String(why);
@@ -151,7 +155,7 @@ class Design {
 
   /** The file that workers read beside a design: any that is a train, and always the same. */
   get #doc(): Doc {
-    return this.base ?? { name: "train.toml", text: EMPTY, files: {} };
+    return this.base ?? { name: "train.toml", text: newTrain("set"), files: {} };
   }
 
   async #told(form: string, more: Request): Promise<string | null> {
@@ -168,9 +172,13 @@ class Design {
 
   /** Opens a row as the train of the page; all panels show it. */
   async open(row: Row): Promise<void> {
-    this.shown = row.number;
+    this.opening = row.number;
     const text = await this.#told("train", { write: [row.number] });
-    if (text === null || this.shown !== row.number) return;
+    // Another row, or another wish, may have come before it.
+    if (this.opening !== row.number) return;
+    this.opening = null;
+    if (text === null) return;
+    this.shown = row.number;
     store.open({ name: `design-${row.number}.toml`, text, files: this.base?.files ?? {} });
     store.say(`row ${row.number} is the train of the page; undo brings back the one before`);
   }
@@ -191,16 +199,5 @@ class Design {
     this.backward = { ...this.backward, on: false };
   }
 }
-
-const EMPTY = `format = 1
-name = "none"
-members = ["a", "b"]
-terminals = ["a", "b"]
-[[set]]
-name = "P"
-sun = { member = "a", teeth = 20 }
-ring = { member = "frame", teeth = 70 }
-carrier = "b"
-`;
 
 export const design = new Design();

@@ -9,6 +9,7 @@
 //! Source of the torques: G. Müller, *Epicyclic Drive Trains* (1982), basic efficiency of a set.
 
 use super::layout::{GROUND, INPUT, Layout, MAX_SETS, MAX_SHAFTS, OUTPUT};
+use super::measure::solve;
 
 /// The most unknowns: a torque for each set, for each closed element, and that of the output.
 const MOST: usize = MAX_SHAFTS - 1;
@@ -68,7 +69,7 @@ fn torques(layout: &Layout, k: &[f64], closed: &[[u8; 2]]) -> Option<[f64; MOST]
     }
     // The housing has no row: it carries what is left.
     let row = |shaft: u8| usize::from(shaft) - usize::from(shaft > GROUND);
-    let mut a = [[0.0_f64; MOST + 1]; MOST];
+    let mut a = [[0.0_f64; MOST]; MOST];
     let mut add = |shaft: u8, column: usize, value: f64| {
         if shaft != GROUND {
             a[row(shaft)][column] += value;
@@ -84,26 +85,7 @@ fn torques(layout: &Layout, k: &[f64], closed: &[[u8; 2]]) -> Option<[f64; MOST]
         add(*x, sets + 1 + e, 1.0);
         add(*y, sets + 1 + e, -1.0);
     }
-    add(INPUT, size, -1.0);
-    for column in 0..size {
-        let pivot = (column..size).max_by(|x, y| a[*x][column].abs().total_cmp(&a[*y][column].abs()))?;
-        if a[pivot][column].abs() < 1e-12 {
-            return None;
-        }
-        a.swap(column, pivot);
-        for below in column + 1..size {
-            let factor = a[below][column] / a[column][column];
-            if factor != 0.0 {
-                for c in column..=size {
-                    a[below][c] -= factor * a[column][c];
-                }
-            }
-        }
-    }
-    let mut found = [0.0; MOST];
-    for r in (0..size).rev() {
-        let known: f64 = (r + 1..size).map(|c| a[r][c] * found[c]).sum();
-        found[r] = (a[r][size] - known) / a[r][r];
-    }
-    Some(found)
+    let mut b = [0.0; MOST];
+    b[row(INPUT)] = -1.0;
+    solve(size, a, b, 1e-12)
 }

@@ -2,7 +2,7 @@
 
 use super::hybrid::{HybridDesign, HybridMode};
 use super::train_file::{quoted, set_lines};
-use super::wish::usual_meshes;
+use super::wish::Wish;
 
 /// Efficiency of a machine in the file, a usual one of motor and inverter together.
 const MACHINE: &str = "0.93";
@@ -41,7 +41,7 @@ impl HybridDesign {
         text += &format!("members = {}\nterminals = [\"engine\", \"output\"]\n", quoted(turning));
         let members: Vec<String> = self.layout.chars().map(|digit| name(shaft(digit))).collect();
         for (n, (set, three)) in self.sets.iter().zip(members.chunks(3)).enumerate() {
-            text += &set_lines(n + 1, set, three, &usual_meshes());
+            text += &set_lines(n + 1, set, three, &Wish::usual_meshes());
         }
         let machine = |m: &str| format!("    {{ name = \"motor {m}\", member = \"{m}\", efficiency = {MACHINE} }},\n");
         text += "\n[[variator]]\nname = \"electric path\"\nkind = \"electric\"\nmachines = [\n";

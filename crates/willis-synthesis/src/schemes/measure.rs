@@ -10,11 +10,11 @@ use super::motion::{MAX_MOBILITY, Motion};
 
 type Square = [[f64; MAX_MOBILITY]; MAX_MOBILITY];
 
-/// Solves a small linear system; none where it has no unique solution.
-fn solve(size: usize, mut a: Square, mut b: [f64; MAX_MOBILITY]) -> Option<[f64; MAX_MOBILITY]> {
+/// Solves a small linear system; none where it has no unique solution, its pivots being no larger than `zero`.
+pub(super) fn solve<const N: usize>(size: usize, mut a: [[f64; N]; N], mut b: [f64; N], zero: f64) -> Option<[f64; N]> {
     for column in 0..size {
         let pivot = (column..size).max_by(|x, y| a[*x][column].abs().total_cmp(&a[*y][column].abs()))?;
-        if a[pivot][column] == 0.0 {
+        if a[pivot][column].abs() <= zero {
             return None;
         }
         a.swap(column, pivot);
@@ -57,7 +57,7 @@ pub(crate) fn speeds_and_torque(motion: &Motion, closed: &[[u8; 2]]) -> Option<(
     }
     let mut one = [0.0; MAX_MOBILITY];
     one[0] = 1.0;
-    let q = solve(size, rows, one)?;
+    let q = solve(size, rows, one, 0.0)?;
     let mut moving = [0.0; MAX_SHAFTS];
     for s in (0..motion.shafts).filter(|s| *s != usize::from(GROUND)) {
         moving[s] = float(motion.shaft(s as u8)).iter().zip(q).map(|(v, q)| v * q).sum();
@@ -65,7 +65,7 @@ pub(crate) fn speeds_and_torque(motion: &Motion, closed: &[[u8; 2]]) -> Option<(
     let input = rows[0];
     rows[0] = float(motion.shaft(1));
     let columns: Square = std::array::from_fn(|i| std::array::from_fn(|j| rows[j][i]));
-    let torques = solve(size, columns, input.map(|x| -x))?;
+    let torques = solve(size, columns, input.map(|x| -x), 0.0)?;
     let torque = torques[1..size].iter().fold(0.0_f64, |m, t| m.max(t.abs()));
     Some((moving, torque))
 }

@@ -9,7 +9,7 @@ use super::layout::{GROUND, Layout, shaft_digit};
 use super::measure;
 use super::motion;
 use super::planar;
-use super::wish::{SetRatio, Wish, usual_meshes};
+use super::wish::{SetRatio, Wish};
 
 /// A shaft of a scheme.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -107,7 +107,7 @@ pub struct Scheme {
     /// The tooth ratio of every set.
     pub sets: Vec<SetRatio>,
     /// Efficiencies of the meshes of sun and planet, and of planet and ring, in every set.
-    #[serde(default = "usual_meshes")]
+    #[serde(default = "Wish::usual_meshes")]
     pub mesh_efficiencies: [Rational; 2],
     /// The shafts, in the order of the layout's digits.
     pub shafts: Vec<SchemeShaft>,

@@ -268,7 +268,7 @@ pub struct Wish {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min_efficiency: Option<Rational>,
     /// Efficiencies of the meshes of sun and planet, and of planet and ring, in every set, from above 0 to 1.
-    #[serde(default = "usual_meshes")]
+    #[serde(default = "Wish::usual_meshes")]
     pub mesh_efficiencies: [Rational; 2],
     /// The most brakes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -298,12 +298,6 @@ fn ten() -> usize {
     10
 }
 
-/// Efficiencies of the meshes of sun and planet, and of planet and ring, where nothing is said of them: usual ones, those of
-/// the examples.
-pub(super) fn usual_meshes() -> [Rational; 2] {
-    [Rational::new(98, 100), Rational::new(99, 100)]
-}
-
 /// A number as a decimal that a train file takes.
 pub(super) fn decimal(x: &Rational) -> String {
     x.to_f64().to_string()
@@ -314,6 +308,12 @@ fn yes() -> bool {
 }
 
 impl Wish {
+    /// Efficiencies of the meshes of sun and planet, and of planet and ring, where nothing is said of them: usual ones, those
+    /// of the examples.
+    pub fn usual_meshes() -> [Rational; 2] {
+        [Rational::new(98, 100), Rational::new(99, 100)]
+    }
+
     /// Schemes of sets with these tooth ratios, so many elements, closed elements and forward gears, and one reverse
     /// gear; everything else is left open.
     ///
@@ -334,7 +334,7 @@ impl Wish {
             max_speed: None,
             max_torque: None,
             min_efficiency: None,
-            mesh_efficiencies: usual_meshes(),
+            mesh_efficiencies: Self::usual_meshes(),
             max_brakes: None,
             planar: false,
             layout: None,
@@ -444,11 +444,14 @@ impl Wish {
             }
         }
         let is_efficiency = |x: &Rational| x.sign() > 0 && *x <= Rational::ONE;
-        for (place, x) in (self.mesh_efficiencies.iter().map(|x| ("mesh_efficiencies", x)))
-            .chain(self.min_efficiency.iter().map(|x| ("min_efficiency", x)))
+        // One that stands for both meshes is spoken of once.
+        let [one, other] = &self.mesh_efficiencies;
+        let meshes = [one].into_iter().chain(Some(other).filter(|x| *x != one));
+        for (place, x) in
+            (meshes.map(|x| ("mesh_efficiencies", x))).chain(self.min_efficiency.iter().map(|x| ("min_efficiency", x)))
         {
             if !is_efficiency(x) {
-                let message = format!("an efficiency of {x} is not above 0 and at most 1");
+                let message = format!("an efficiency of {} is not above 0 and at most 1", decimal(x));
                 say(Code::OutOfRange, place, message, "give a part of 1, as in 0.98".into());
             }
         }

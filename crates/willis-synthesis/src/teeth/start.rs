@@ -277,7 +277,7 @@ impl Around {
             return Err(d.hint("write a design file with the ratios that are wanted").into());
         }
         let mut wish = toml_edit::Table::new();
-        let written = |v: &String| v.parse::<f64>().map_or_else(|_| Value::from(v.as_str()), Value::from);
+        let written = |v: &String| number(v).parse::<Value>().unwrap_or_else(|_| Value::from(v.as_str()));
         wish.insert("tolerance", toml_edit::value(written(&self.tolerance)));
         wish.insert("mismatch", toml_edit::value(format!("-{0}..{0}", most.min(4))));
         wish.insert("rules", toml_edit::value(["assembly", "clearance"].into_iter().collect::<toml_edit::Array>()));

@@ -112,7 +112,7 @@ impl fmt::Display for EfficiencyBasis {
         }
         for (k, ((name, speed), (_, torque))) in self.speeds_rad_s.iter().zip(self.torques_n_m.iter()).enumerate() {
             let rpm = speed * 30.0 / std::f64::consts::PI;
-            write!(f, "{} {name} {rpm:.1} rpm and {torque:.1} N m", if k == 0 { " (" } else { "," })?;
+            write!(f, "{}{name} {rpm:.1} rpm and {torque:.1} N m", if k == 0 { " (" } else { ", " })?;
         }
         if !self.speeds_rad_s.0.is_empty() {
             write!(f, ")")?;
@@ -134,7 +134,8 @@ impl fmt::Display for EfficiencyBasis {
 }
 
 /// The efficiencies of all meshes in a state, and where they come from; none where no law computes any. A point `here`
-/// comes first, nameless where it is none of the file's; then the load at which the table of ratios compares gears; then operations of this state.
+/// comes first, nameless where it is none of the file's; then the load at which the table of ratios compares gears; then
+/// operations of this state.
 pub(super) fn basis(
     train: &Train,
     state: Option<usize>,

@@ -322,7 +322,7 @@ impl Schemes {
         let mut meshes =
             self.mesh_efficiency.iter().take(3).map(|text| wrong.read("mesh_efficiency", Some(text), PART));
         let mesh_efficiencies: Option<[Rational; 2]> = match [meshes.next(), meshes.next(), meshes.next()] {
-            [None, ..] => Some([Rational::new(98, 100), Rational::new(99, 100)]),
+            [None, ..] => Some(Wish::usual_meshes()),
             [Some(both), None, _] => both.map(|x: Rational| [x.clone(), x]),
             [Some(external), Some(internal), None] => external.zip(internal).map(|(a, b)| [a, b]),
             _ => {
