@@ -80,7 +80,7 @@ pub struct EfficiencyBasis {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum NoBasis {
-    /// The file has no operation that says how this state is loaded.
+    /// The file has no operation in which a mesh of this state carries a load and moves.
     NoOperation,
     /// No operation that says so has exactly one equilibrium; these were tried.
     NotUnique(Vec<String>),
@@ -99,7 +99,7 @@ impl fmt::Display for EfficiencyBasis {
         if let Some(reason) = &self.reason {
             write!(f, "mesh efficiencies are nominal, from a coefficient of friction of {friction}: ")?;
             return match reason {
-                NoBasis::NoOperation => write!(f, "no operation of the file tells a load of this state"),
+                NoBasis::NoOperation => write!(f, "no operation of the file loads a mesh of this state that moves"),
                 NoBasis::NotUnique(tried) => {
                     write!(f, "there is not exactly one equilibrium at the load of {}", tried.join(", "))
                 }
@@ -145,8 +145,15 @@ pub(super) fn basis(
         return None;
     }
     let named = |point: &Operation| Some(point.name.clone()).filter(|name| !name.is_empty());
-    let at = |operation: Option<String>, point: &Operation| {
-        in_force(train, point).map(|(all, report)| found(train, operation, all, &report, point))
+    let mut tried: Vec<String> = Vec::new();
+    // A point in which every mesh is idle says nothing of losses; one without its only equilibrium is told.
+    let mut at = |operation: Option<String>, point: &Operation| match in_force(train, point) {
+        Some((all, report)) => Some(found(train, operation, all, &report, point))
+            .filter(|(_, own)| own.nominal.len() < own.efficiencies.0.len()),
+        None => {
+            tried.extend(operation);
+            None
+        }
     };
     let loaded = |point: &&Operation| {
         let acts = |load: &Load| match load {
@@ -157,20 +164,17 @@ pub(super) fn basis(
     if let Some(found) = here.filter(loaded).and_then(|point| at(named(point), point)) {
         return Some(found);
     }
-    let mut tried: Vec<String> = Vec::new();
     let load = train.ends(state)[0].and_then(|input| DrivingLoad::of_file(train, input));
     if let Some(point) = load.as_ref().and_then(|load| load.point(train, state, "")) {
         let operation = load.and_then(|load| load.operation);
-        if let Some(found) = at(operation.clone(), &point) {
+        if let Some(found) = at(operation, &point) {
             return Some(found);
         }
-        tried.extend(operation);
     }
     for point in train.operations.iter().filter(|o| o.state == state).filter(loaded) {
         if let Some(found) = at(Some(point.name.clone()), point) {
             return Some(found);
         }
-        tried.push(point.name.clone());
     }
     tried.dedup();
     let efficiencies: Vec<Efficiency> = train.meshes.iter().map(|m| m.efficiency.clone()).collect();

@@ -54,6 +54,11 @@ fn efficiencies_are_those_of_the_analysis_at_the_load_that_is_named() {
         let all = regimes(&train, &RegimeSelection::default()).unwrap();
         for state in &all.states {
             let basis = state.efficiency_basis.as_ref().unwrap();
+            // Turning as one, no mesh of the train is loaded.
+            if basis.reason == Some(NoBasis::NoOperation) {
+                assert!(state.reason.is_some(), "{name}, {}: {basis}", state.state);
+                continue;
+            }
             assert!(basis.is_at_load(), "{name}, {}: {basis}", state.state);
             let Some(operation) = &basis.operation else { panic!("{name}: the file gives the load") };
             let own = train.operations().iter().find(|o| o.name == *operation).unwrap();
@@ -91,10 +96,50 @@ fn without_an_operation_efficiencies_are_nominal_and_said_to_be() {
 fn an_operation_without_a_load_is_none_to_take_efficiencies_from() {
     let text = without_operations(&example("fva-planetary-stage"))
         + "\n[[operation]]\nname = \"nothing acts\"\nspeeds = { sun = \"1500 rpm\" }\ntorques = { sun = \"0 N m\" }\n";
-    let train = Train::from_toml(&text).unwrap();
+    for text in [text.clone(), text.replace("1500 rpm", "0 rpm").replace("0 N m", "100 N m")] {
+        let train = Train::from_toml(&text).unwrap();
+        let all = regimes(&train, &RegimeSelection::default()).unwrap();
+        let basis = all.states[0].efficiency_basis.as_ref().unwrap();
+        assert_eq!(basis.reason, Some(NoBasis::NoOperation), "{text}");
+    }
+}
+
+/// A drive that friction locks when it is driven back has no efficiency there to take over.
+#[test]
+fn an_operation_that_is_not_unique_is_none_to_take_efficiencies_from() {
+    let text = r#"
+        format = 1
+        name = "locks"
+        members = ["sun", "carrier", "ring"]
+        terminals = ["sun", "ring"]
+        [oil]
+        name = "ISO VG 220"
+        temperature = "70 degC"
+        [laws]
+        mesh_friction = "constant"
+        friction_coefficient = 0.3
+        [[set]]
+        name = "P1"
+        type = "stepped"
+        suns = [{ member = "sun", teeth = 12, planet_teeth = 51 }]
+        rings = [
+            { member = "frame", teeth = 114, planet_teeth = 51 },
+            { member = "ring", teeth = 113, planet_teeth = 50 },
+        ]
+        carrier = "carrier"
+        planet = { count = 3 }
+        geometry = { module = "0.7 mm", width = "20 mm", roughness = "0.4 um" }
+        [[operation]]
+        name = "driven back"
+        speeds = { ring = "10 rpm" }
+        torques = { ring = "10 N m" }
+    "#;
+    let train = Train::from_toml(text).unwrap();
+    assert_ne!(operate(&train, &train.operations()[0]).unwrap().0.verdict, Verdict::Unique);
     let all = regimes(&train, &RegimeSelection::default()).unwrap();
     let basis = all.states[0].efficiency_basis.as_ref().unwrap();
-    assert_eq!(basis.reason, Some(NoBasis::NoOperation));
+    assert_eq!(basis.reason, Some(NoBasis::NotUnique(vec!["driven back".into()])));
+    assert!(basis.to_string().contains("not exactly one equilibrium at the load of driven back"), "{basis}");
 }
 
 #[test]
