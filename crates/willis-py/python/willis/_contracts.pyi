@@ -3597,10 +3597,14 @@ class RegimesEfficiencyBasis(Record):
 
     # Example `````` use willis::regimes::{RegimeSelection, regimes}; use willis::train::Train;
 
-    let text = include_str!("../../../../examples/fva-planetary-stage.toml"); let all =
-    regimes(&Train::from_toml(text)?, &RegimeSelection::default())?; let basis =
-    all.states[0].efficiency_basis.as_ref().unwrap(); assert!(basis.is_at_load());
-    assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(), willis::Diagnostics>(()) ``````"""
+    let train = Train::from_toml(r#"     format = 1     name = "one set"     members = ["s", "c"]     terminals =
+    ["s", "c"]     [oil]     name = "ISO VG 220"     temperature = "70 degC"     [[set]]     name = "P1"     sun = {
+    member = "s", teeth = 30 }     planet = { teeth = 20, count = 4 }     ring = { member = "frame", teeth = 70 }
+    carrier = "c"     geometry = { module = "2 mm", width = "25 mm", roughness = "0.4 um" }     [[operation]]
+    name = "full load"     speeds = { s = "1000 rpm" }     torques = { s = "200 N m" } "#)?; let all =
+    regimes(&train, &RegimeSelection::default())?; let basis = all.states[0].efficiency_basis.as_ref().unwrap();
+    assert!(basis.is_at_load()); assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(),
+    willis::Diagnostics>(()) ``````"""
     @property
     def operation(self) -> str | None:
         """The operation of the file whose load it is; absent where the request gives the point, and of nominal
@@ -3868,10 +3872,14 @@ class FormulaEfficiencyBasis(Record):
 
     # Example `````` use willis::regimes::{RegimeSelection, regimes}; use willis::train::Train;
 
-    let text = include_str!("../../../../examples/fva-planetary-stage.toml"); let all =
-    regimes(&Train::from_toml(text)?, &RegimeSelection::default())?; let basis =
-    all.states[0].efficiency_basis.as_ref().unwrap(); assert!(basis.is_at_load());
-    assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(), willis::Diagnostics>(()) ``````"""
+    let train = Train::from_toml(r#"     format = 1     name = "one set"     members = ["s", "c"]     terminals =
+    ["s", "c"]     [oil]     name = "ISO VG 220"     temperature = "70 degC"     [[set]]     name = "P1"     sun = {
+    member = "s", teeth = 30 }     planet = { teeth = 20, count = 4 }     ring = { member = "frame", teeth = 70 }
+    carrier = "c"     geometry = { module = "2 mm", width = "25 mm", roughness = "0.4 um" }     [[operation]]
+    name = "full load"     speeds = { s = "1000 rpm" }     torques = { s = "200 N m" } "#)?; let all =
+    regimes(&train, &RegimeSelection::default())?; let basis = all.states[0].efficiency_basis.as_ref().unwrap();
+    assert!(basis.is_at_load()); assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(),
+    willis::Diagnostics>(()) ``````"""
     @property
     def operation(self) -> str | None:
         """The operation of the file whose load it is; absent where the request gives the point, and of nominal
@@ -4108,10 +4116,14 @@ class LocateEfficiencyBasis(Record):
 
     # Example `````` use willis::regimes::{RegimeSelection, regimes}; use willis::train::Train;
 
-    let text = include_str!("../../../../examples/fva-planetary-stage.toml"); let all =
-    regimes(&Train::from_toml(text)?, &RegimeSelection::default())?; let basis =
-    all.states[0].efficiency_basis.as_ref().unwrap(); assert!(basis.is_at_load());
-    assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(), willis::Diagnostics>(()) ``````"""
+    let train = Train::from_toml(r#"     format = 1     name = "one set"     members = ["s", "c"]     terminals =
+    ["s", "c"]     [oil]     name = "ISO VG 220"     temperature = "70 degC"     [[set]]     name = "P1"     sun = {
+    member = "s", teeth = 30 }     planet = { teeth = 20, count = 4 }     ring = { member = "frame", teeth = 70 }
+    carrier = "c"     geometry = { module = "2 mm", width = "25 mm", roughness = "0.4 um" }     [[operation]]
+    name = "full load"     speeds = { s = "1000 rpm" }     torques = { s = "200 N m" } "#)?; let all =
+    regimes(&train, &RegimeSelection::default())?; let basis = all.states[0].efficiency_basis.as_ref().unwrap();
+    assert!(basis.is_at_load()); assert!(basis.efficiencies.iter().all(|(_, eta)| *eta < 1.0)); # Ok::<(),
+    willis::Diagnostics>(()) ``````"""
     @property
     def operation(self) -> str | None:
         """The operation of the file whose load it is; absent where the request gives the point, and of nominal
