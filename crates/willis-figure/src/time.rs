@@ -109,7 +109,7 @@ pub struct TimeShift {
 pub struct TimePanel {
     /// Its heading: `Speed`.
     pub quantity: String,
-    /// SI.
+    /// SI; of temperatures °C.
     pub unit: ColumnUnit,
     /// The curves, in the order of the columns.
     pub lines: Vec<TimeLine>,
@@ -167,13 +167,14 @@ pub struct TimeMark {
     pub cause: String,
 }
 
-/// Kinds of columns that make panels, with their quantity; the first six wherever they are, the
+/// Kinds of columns that make panels, with their quantity; the first seven wherever they are, the
 /// others where none of the first is.
-const KINDS: [(ColumnKind, &str); 10] = [
+const KINDS: [(ColumnKind, &str); 11] = [
     (ColumnKind::Speed, "Speed"),
     (ColumnKind::Torque, "Torque"),
     (ColumnKind::Power, "Power"),
     (ColumnKind::Energy, "Energy"),
+    (ColumnKind::Temperature, "Temperature"),
     (ColumnKind::Ratio, "Ratio"),
     (ColumnKind::Twist, "Twist"),
     (ColumnKind::Reaction, "Reaction"),
@@ -181,7 +182,7 @@ const KINDS: [(ColumnKind, &str); 10] = [
     (ColumnKind::Angle, "Angle"),
     (ColumnKind::Efficiency, "Efficiency"),
 ];
-const USUAL: usize = 6;
+const USUAL: usize = 7;
 /// Curves in a panel; a label beside each has to find room.
 const MOST_LINES: usize = 8;
 /// Rows of modes.
@@ -265,9 +266,11 @@ impl TimePlotBuilder {
 
     /// Takes a row into curves and modes.
     fn take(&mut self, time: f64, values: &[f64]) {
-        for ((k, _, curve), fine) in self.curves.iter_mut().zip(&mut self.fine) {
-            curve.push(time, values[*k]);
-            fine.push(time, values[*k]);
+        for ((k, column, curve), fine) in self.curves.iter_mut().zip(&mut self.fine) {
+            // Temperatures are drawn in °C.
+            let zero = if column.kind == ColumnKind::Temperature { 273.15 } else { 0.0 };
+            curve.push(time, values[*k] - zero);
+            fine.push(time, values[*k] - zero);
         }
         for (k, _, modes) in &mut self.modes {
             modes.push(time, values[*k]);
@@ -308,6 +311,9 @@ impl TimePlotBuilder {
         let panels = KINDS.iter().filter_map(|(kind, quantity)| {
             let own: Vec<_> = self.curves.iter().filter(|(_, c, _)| c.kind == *kind).collect();
             let mut panel = panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))?;
+            if *kind == ColumnKind::Temperature {
+                panel.unit = ColumnUnit::DegreeCelsius;
+            }
             if *kind == ColumnKind::Speed {
                 // The frame is the first member.
                 let place = |name: &String| self.members.iter().position(|m| m == name)?.checked_sub(1);

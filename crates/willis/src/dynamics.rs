@@ -22,6 +22,7 @@ mod fixed;
 mod fused;
 mod halt;
 mod handles;
+mod heated;
 mod integrator;
 mod lagged;
 mod laws;
@@ -44,6 +45,7 @@ mod steady;
 mod still;
 mod stretch;
 mod system;
+mod warming;
 mod window;
 
 pub use batch::Batch;
@@ -52,7 +54,7 @@ pub use handles::{Input, InputInfo, InputKind, InputRefused, Output};
 pub use modes::{Mode, ModesReport, Part, PlanetMode, RigidMode, modes};
 pub use report::{
     Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind,
-    LimitExceeded, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
+    LimitExceeded, Method, ModeLabel, MotionHeat, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
 };
 pub use run::Simulation;
 pub use simulate::simulate;

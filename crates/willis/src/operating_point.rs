@@ -338,7 +338,7 @@ enum Source {
 }
 
 /// All losses of a train that an operating point can compute.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Physics<'t, R: Real = f64> {
     train: Cow<'t, Train>,
     numbers: Numbers<R>,

@@ -228,6 +228,9 @@ fn unit(of: ColumnUnit, most: f64) -> (String, f64) {
     if of == ColumnUnit::RadianPerSecond {
         return ("rpm".to_owned(), std::f64::consts::TAU / 60.0);
     }
+    if of == ColumnUnit::DegreeCelsius {
+        return ("°C".to_owned(), 1.0);
+    }
     let prefixes = match of {
         ColumnUnit::Watt | ColumnUnit::Joule | ColumnUnit::NewtonMetre => true,
         ColumnUnit::Radian => most < 0.1,

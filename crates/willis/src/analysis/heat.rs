@@ -250,19 +250,18 @@ pub(crate) fn placed<'a, R: crate::real::Real>(
 ) -> (Vec<R>, R) {
     let mut all = vec![R::from(0.0); heat.nodes.len()];
     let mut elsewhere = R::from(0.0);
-    let place = |part: HeatPart| heat.nodes.iter().position(|n| n.parts.contains(&part));
     for (name, kind, loss) in losses {
         match kind {
             LossKind::Sliding | LossKind::Rolling => {
                 let mesh = train.meshes.iter().find(|m| m.name == name);
                 for k in 0..2 {
-                    let own = mesh.and_then(|m| place(HeatPart::Member(m.gears[k].member)));
+                    let own = mesh.and_then(|m| heat.place(HeatPart::Member(m.gears[k].member)));
                     all[own.unwrap_or(OIL)] += loss * 0.5;
                 }
             }
             LossKind::Variator => {
                 let at = train.variators.iter().position(|v| v.name == name);
-                match at.and_then(|k| place(HeatPart::Variator(k))) {
+                match at.and_then(|k| heat.place(HeatPart::Variator(k))) {
                     Some(own) => all[own] += loss,
                     None => elsewhere += loss,
                 }
@@ -276,7 +275,7 @@ pub(crate) fn placed<'a, R: crate::real::Real>(
                     LossKind::Seal => seal,
                     _ => rotor,
                 };
-                all[part.and_then(place).unwrap_or(OIL)] += loss;
+                all[part.and_then(|p| heat.place(p)).unwrap_or(OIL)] += loss;
             }
         }
     }

@@ -15,6 +15,7 @@ use super::source::{out_of_domain, source_torque};
 use super::still::Still;
 use super::stretch::Steady;
 use super::system::{PathKind, Rubs, System};
+use super::warming::Warming;
 
 /// What a backlash does.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -106,6 +107,9 @@ pub(crate) struct Engine {
     pub agrees: bool,
     /// Whether energies are counted.
     pub counts: bool,
+    /// Temperatures that follow what is lost, and those of each place in the row made last, K.
+    pub warming: Option<Box<Warming>>,
+    pub warmth: Vec<f64>,
     /// Sizes of the states, against which errors are measured where a state is small.
     pub scales: Vec<f64>,
     /// Choices of which it was not proved that they are the only ones.
@@ -168,6 +172,8 @@ impl Engine {
             engaged: vec![false; system.frictions.len()],
             inside: 0.0,
             map: None,
+            warming: None,
+            warmth: vec![],
             varying: false,
             speed: vec![0.0; system.all()],
             acceleration: vec![0.0; system.all()],

@@ -51,6 +51,19 @@ impl Laws {
         Some(Self { physics: Arc::new(physics), places, first: 0, flow, step, torques, at_rest })
     }
 
+    /// Brings the oil to another temperature, K. Whether that is one.
+    pub fn warm_to(&mut self, oil: f64) -> bool {
+        if self.physics.temperature().is_none_or(|now| now == oil) {
+            return false;
+        }
+        Arc::make_mut(&mut self.physics).warm_to(oil);
+        let flow = &self.at_rest.0;
+        self.at_rest.1 = self.physics.follow(flow);
+        self.step = self.physics.follow(&self.flow);
+        self.torques = self.places.iter().map(|p| self.step.drag(p)).collect();
+        true
+    }
+
     /// As before a run.
     pub fn begin(&mut self) {
         (self.flow, self.step) = (*self.at_rest).clone();
@@ -83,8 +96,8 @@ impl Laws {
         Loss { drive: lost, coast: 1.0 - 1.0 / (1.0 - lost), drive_torque: 0.0, coast_torque: 0.0 }
     }
 
-    /// What is followed, and what is not.
-    pub fn assumptions(&self, train: &Train) -> Vec<String> {
+    /// What is followed, and what is not; `warms` where the temperature of the oil follows the losses.
+    pub fn assumptions(&self, train: &Train, warms: bool) -> Vec<String> {
         let mut all: Vec<String> = Vec::new();
         if train.meshes().iter().any(|m| m.computed) {
             all.push(format!("tooth friction `{}`", self.physics.friction_law()));
@@ -96,6 +109,9 @@ impl Laws {
             }
         }
         let oil = match self.physics.temperature() {
+            Some(t) if warms => {
+                format!("with oil that has {:.0} °C at the start and warms with what is lost", t - 273.15)
+            }
             Some(t) => format!("with oil of constant {:.0} °C", t - 273.15),
             None => "without oil".to_owned(),
         };

@@ -3,6 +3,7 @@
 use crate::train::MemberId;
 
 use super::engine::{Engine, Touch};
+use super::integrator::Smooth;
 use super::mode::{Side, dot};
 use super::report::{Column, ModeLabel};
 use super::shows::{Moves, Shows};
@@ -142,6 +143,7 @@ impl Engine {
                 let went_out: f64 = -powers().filter(|p| *p < 0.0).sum::<f64>();
                 if came_in > 0.0 { went_out / came_in } else { f64::NAN }
             }
+            Shows::Temperature(k) => self.warmth.get(k).copied().unwrap_or(f64::NAN),
             Shows::Mode(moves) => self.label(moves).value(),
         }
     }
@@ -149,6 +151,9 @@ impl Engine {
     /// A row at a state, which is solved for.
     pub fn row(&mut self, t: f64, x: &[f64], out: &mut Vec<f64>) {
         self.solve(t, x);
+        if let Some(warming) = &self.warming {
+            self.warmth = warming.at(t, &x[self.states()..]);
+        }
         out.clear();
         out.extend(self.shows.iter().map(|shows| self.value(*shows, t, x)));
     }

@@ -186,6 +186,8 @@ pub enum ColumnKind {
     Energy,
     /// Ratio of a variator.
     Ratio,
+    /// Temperature of a place of the thermal network.
+    Temperature,
 }
 
 impl ColumnKind {
@@ -204,6 +206,7 @@ impl ColumnKind {
             Self::Efficiency => "efficiency",
             Self::Energy => "energy",
             Self::Ratio => "ratio",
+            Self::Temperature => "temperature",
         }
     }
 
@@ -217,6 +220,7 @@ impl ColumnKind {
             Self::Torque | Self::Reaction => ColumnUnit::NewtonMetre,
             Self::Power => ColumnUnit::Watt,
             Self::Energy => ColumnUnit::Joule,
+            Self::Temperature => ColumnUnit::Kelvin,
             Self::Mode | Self::Efficiency | Self::Ratio => ColumnUnit::None,
         }
     }
@@ -251,6 +255,12 @@ pub enum ColumnUnit {
     /// J
     #[serde(rename = "J")]
     Joule,
+    /// K
+    #[serde(rename = "K")]
+    Kelvin,
+    /// °C: in figures
+    #[serde(rename = "degC")]
+    DegreeCelsius,
 }
 
 impl ColumnUnit {
@@ -265,6 +275,8 @@ impl ColumnUnit {
             Self::NewtonMetre => "N m",
             Self::Watt => "W",
             Self::Joule => "J",
+            Self::Kelvin => "K",
+            Self::DegreeCelsius => "degC",
         }
     }
 }
@@ -639,6 +651,9 @@ pub struct RunReport {
     pub final_speeds_rad_s: Named<f64>,
     /// Where the energy went; nothing where it was not counted, or is no longer finite.
     pub energy: Option<EnergyReport>,
+    /// Temperatures, where the train says what carries its heat away and steps are adapted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heat: Option<MotionHeat>,
     /// Limits of variators that the run exceeds.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub beyond_limits: Vec<LimitExceeded>,
@@ -656,6 +671,34 @@ pub struct RunReport {
     /// Values in the order of the columns, SI; nothing where a value is not determined.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rows: Option<Vec<Vec<Option<f64>>>>,
+}
+
+/// Temperatures of a run, and where the heat went: `made = carried away + stored`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct MotionHeat {
+    /// Temperature of each place at the start, K.
+    pub start_k: Named<f64>,
+    /// Temperature of each place at the end, K.
+    pub end_k: Named<f64>,
+    /// Highest oil temperature, K.
+    pub highest_oil_k: f64,
+    /// Highest oil temperature that the train allows, K.
+    pub limit_k: f64,
+    /// When the oil first went beyond it, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond_limit_s: Option<f64>,
+    /// Heat made by losses and by what the network has beside them, J.
+    pub made_j: f64,
+    /// Heat carried away, J.
+    pub carried_j: f64,
+    /// Heat stored in oil and parts, J.
+    pub stored_j: f64,
+    /// Lost outside the gearbox, in parts that are cooled elsewhere or belong to no mesh, shift element or terminal, J.
+    pub elsewhere_j: f64,
+    /// Heat made less what was carried away and stored, over the heat made.
+    pub residual: f64,
 }
 
 impl Contract for RunReport {

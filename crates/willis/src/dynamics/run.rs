@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 use crate::contract::Format;
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{MemberId, Train};
 
 use super::choose::Trouble;
@@ -134,6 +134,9 @@ impl Simulation {
         engine.system.scenario.end = to;
         engine.counts = options.energies;
         engine.slack = (0.1 * options.tolerance / NOISE).max(1.0);
+        if options.method == Method::Adaptive {
+            warm(&mut engine)?;
+        }
         let columns = engine.columns();
         Self::at_start(engine, columns, options.clone(), from)
     }
@@ -173,7 +176,11 @@ impl Simulation {
     /// # Errors
     /// Speeds at the start that contradict each other under inputs that were set.
     pub fn again(self) -> Result<Self, Diagnostics> {
-        Self::at_start(self.engine.anew(), self.columns, self.options, self.from)
+        let mut engine = self.engine.anew();
+        if self.options.method == Method::Adaptive {
+            warm(&mut engine)?;
+        }
+        Self::at_start(engine, self.columns, self.options, self.from)
     }
 
     fn at_start(mut engine: Engine, columns: Vec<Column>, options: Options, from: f64) -> Result<Self, Diagnostics> {
@@ -506,9 +513,11 @@ impl Simulation {
                 self.engine.look(self.t, &self.x);
                 self.look_ahead();
             }
+            let horizon = self.engine.warming.as_ref().map_or(f64::INFINITY, |w| w.horizon() - self.t);
+            let longest = self.longest.min(horizon);
             // What is left of a stretch is not tiny.
-            let goal = self.t + self.longest;
-            let goal = if goal + 0.01 * self.longest < self.segment { goal } else { self.segment };
+            let goal = self.t + longest;
+            let goal = if goal + 0.01 * longest < self.segment { goal } else { self.segment };
             let taken = if self.stiff {
                 self.implicit.step(&mut self.engine, goal)
             } else {
@@ -573,6 +582,11 @@ impl Simulation {
                 return Stretch::Ended(Outcome::TooLong(why));
             }
             if !self.engine.certified && !self.still_single() {
+                return Stretch::Again;
+            }
+            if self.engine.follow_heat(self.t, &self.x) && self.t < self.segment {
+                // The laws are others than those that the integrator begins its next step with.
+                (self.rolling, self.why) = (false, None);
                 return Stretch::Again;
             }
             if self.t >= self.segment {
@@ -787,6 +801,7 @@ impl Simulation {
                 &self.x[states..],
                 &self.came_in,
             ),
+            heat: self.engine.warming.as_ref().map(|w| w.report(self.t, &self.x[states..])),
             beyond_limits: self.engine.beyond.clone(),
             assumptions: s.assumptions.clone(),
             notes,
@@ -796,6 +811,15 @@ impl Simulation {
             rows: None,
         }
     }
+}
+
+/// Lets temperatures follow what is lost.
+fn warm(engine: &mut Engine) -> Result<(), Diagnostics> {
+    engine.warm().map_err(|why| {
+        Diagnostic::new(Code::Unfit, "heat", format!("at the temperature of the oil {why}"))
+            .hint("what is made at each place of [heat] needs a way to the air around it")
+            .into()
+    })
 }
 
 /// What there is to know where no certificate says that the forces are unique.

@@ -31,6 +31,8 @@ pub(super) enum Shows {
     Stored,
     Lost,
     Efficiency,
+    /// Temperature of a place of the thermal network.
+    Temperature(usize),
     Mode(Moves),
 }
 
@@ -114,6 +116,9 @@ impl Shows {
             Self::Loss => (ColumnKind::Power, String::new()),
             Self::Stored | Self::Lost => (ColumnKind::Energy, String::new()),
             Self::Efficiency => (ColumnKind::Efficiency, String::new()),
+            Self::Temperature(k) => {
+                (ColumnKind::Temperature, s.train.heat().map_or(String::new(), |h| h.nodes[k].name.clone()))
+            }
             Self::Mode(moves) => (ColumnKind::Mode, moves.name(s)),
         };
         let quantity = match self {

@@ -152,7 +152,7 @@ impl System {
         if let Some(laws) = &mut laws {
             laws.first = frictions.len();
             frictions.extend(law_places(laws, &mut ports));
-            assumptions.extend(laws.assumptions(train));
+            assumptions.extend(laws.assumptions(train, step == 0.0 && train.heat().is_some_and(|h| h.is_stored())));
         }
         assumptions.extend(not_followed(train));
         let mut paths = Paths::of(train, scenario, integrals, frictions.len(), &mut ports)?;

@@ -193,7 +193,7 @@ struct Place<R> {
 }
 
 /// What of a mesh follows from its geometry alone; worked out once.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Fixed<R> {
     loss_factor: R,
     pitch: Place<R>,

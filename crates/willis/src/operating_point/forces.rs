@@ -157,7 +157,7 @@ impl<R: Real> Place<R> {
 }
 
 /// Where everything stands that carries or presses: follows from the train alone. Empty where there are no bearings.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Forces<R> {
     touches: Vec<Option<Touch<R>>>,
     /// Of each mesh along the axis.
@@ -175,7 +175,7 @@ pub(super) struct Forces<R> {
     systems: Vec<System<R>>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct System<R> {
     shafts: Vec<usize>,
     radial: Springs<R>,
@@ -772,7 +772,7 @@ impl<R: Real> Physics<'_, R> {
 }
 
 /// The bearings of one kind of planet: its axis on them as a beam.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Beam<R> {
     places: Vec<usize>,
     /// Bearings that carry radial loads.

@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 
 use crate::power_flow::Flow;
+use crate::train::heat::HeatPart;
 use crate::train::{FRAME, Fluid, MemberId, MeshId, Train};
 
 use super::{LossKind, Physics, Source, Step};
@@ -19,6 +20,19 @@ pub(crate) struct Place {
     pub members: [MemberId; 2],
     pub name: String,
     pub kind: LossKind,
+}
+
+impl Place {
+    /// What makes the heat; none where it is made in the oil.
+    pub fn heat_part(&self) -> Option<HeatPart> {
+        match self.source {
+            Source::Rolling(_) => Some(HeatPart::Member(self.members[0])),
+            Source::Bearing(k) => Some(HeatPart::Bearing(k)),
+            Source::Seal(k) => Some(HeatPart::Seal(k)),
+            Source::Rotor(k) => Some(HeatPart::Rotor(k)),
+            _ => None,
+        }
+    }
 }
 
 impl Physics<'static> {

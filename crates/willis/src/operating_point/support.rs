@@ -10,7 +10,7 @@ const HELD: f64 = 1e-9;
 
 /// Symmetric springs between movements, factored as `L D Lᵀ`. A movement that no spring holds stays at zero; what loads
 /// it is carried by something else.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Springs<R> {
     matrix: Vec<Vec<R>>,
     /// Below the diagonal the factors, on it the pivots.

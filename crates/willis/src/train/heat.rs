@@ -183,6 +183,16 @@ pub(crate) enum HeatNumber {
 }
 
 impl Heat {
+    /// Whether the oil stores heat, so that its temperature can follow what is lost.
+    pub fn is_stored(&self) -> bool {
+        self.nodes[OIL].capacity > 0.0
+    }
+
+    /// Where the heat of something is made; none where no place names it.
+    pub fn place(&self, part: HeatPart) -> Option<usize> {
+        self.nodes.iter().position(|n| n.parts.contains(&part))
+    }
+
     /// Temperature of the air, K.
     pub fn ambient(&self) -> f64 {
         self.nodes[AMBIENT].fixed.unwrap_or(f64::NAN)

@@ -6,6 +6,7 @@ mod common;
 mod again;
 mod gearbox;
 mod gears;
+mod heat;
 mod laws;
 mod massless;
 mod random;

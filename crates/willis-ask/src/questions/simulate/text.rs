@@ -48,6 +48,7 @@ pub fn text(r: &RunReport) -> String {
     out += &events(r);
     out += &speeds(r);
     out += &energy(r);
+    out += &heat(r);
     let beyond: Vec<String> = r.beyond_limits.iter().map(ToString::to_string).collect();
     for (head, lines) in [("Limits exceeded", &beyond), ("Assumptions in force", &r.assumptions), ("Notes", &r.notes)] {
         if lines.is_empty() {
@@ -149,6 +150,30 @@ fn speeds(run: &RunReport) -> String {
     }
     right(&mut t, 1..3);
     format!("\n{}\n{}", bold(&format!("Speeds at t = {at} s")), show(&t))
+}
+
+/// Temperatures at both ends, and where the heat went.
+fn heat(run: &RunReport) -> String {
+    let Some(heat) = &run.heat else { return String::new() };
+    let celsius = |k: f64| format!("{:.2}", k - 273.15);
+    let mut t = table();
+    set_header(&mut t, &["place", "start °C", "end °C"]);
+    for ((name, start), (_, end)) in heat.start_k.iter().zip(&heat.end_k) {
+        t.add_row([name.clone(), celsius(*start), celsius(*end)]);
+    }
+    right(&mut t, 1..3);
+    let mut out = format!("\n{}\n{}", bold("Temperatures"), show(&t));
+    let limit = match heat.beyond_limit_s {
+        Some(t) => format!("beyond its limit of {} °C from t = {} s on", celsius(heat.limit_k), seconds(t)),
+        None => format!("within its limit of {} °C", celsius(heat.limit_k)),
+    };
+    out += &format!("  highest oil  {} °C, {limit}\n", celsius(heat.highest_oil_k));
+    let [made, carried, stored] = [heat.made_j, heat.carried_j, heat.stored_j].map(joules);
+    out += &format!("  heat         {made} made, {carried} carried away, {stored} stored\n");
+    if heat.elsewhere_j > 0.0 {
+        out += &format!("  elsewhere    {} lost where it warms nothing in the gearbox\n", joules(heat.elsewhere_j));
+    }
+    out + &format!("  balance      closes to {:.1e} of the heat\n", heat.residual.abs())
 }
 
 /// Energy in a unit that reads well.

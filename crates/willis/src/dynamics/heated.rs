@@ -1,0 +1,34 @@
+//! An engine whose temperatures follow what is lost.
+
+use crate::heat::network::Unsolved;
+
+use super::engine::Engine;
+use super::integrator::Smooth;
+use super::shows::Shows;
+use super::warming::Warming;
+
+impl Engine {
+    /// From now on temperatures follow what is lost, where the train says what carries heat away.
+    ///
+    /// # Errors
+    /// The network has no temperatures at the start.
+    pub fn warm(&mut self) -> Result<(), Unsolved> {
+        let Some(warming) = Warming::of(&self.system, self.system.scenario.start)? else { return Ok(()) };
+        self.counts = true;
+        self.shows.extend(warming.places().map(Shows::Temperature));
+        if let Some(laws) = &mut self.system.laws {
+            laws.warm_to(warming.oil());
+        }
+        self.warming = Some(Box::new(warming));
+        Ok(())
+    }
+
+    /// Lets the temperatures follow up to a time that was reached, where it is time to. Whether the laws have changed.
+    pub fn follow_heat(&mut self, t: f64, x: &[f64]) -> bool {
+        let states = self.states();
+        let Some(warming) = self.warming.as_mut().filter(|w| w.is_due(t, &x[states..])) else { return false };
+        warming.follow(t, &x[states..]);
+        let oil = warming.oil();
+        self.system.laws.as_mut().is_some_and(|laws| laws.warm_to(oil))
+    }
+}
