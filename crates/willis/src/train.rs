@@ -43,8 +43,8 @@ pub(crate) use format::keys::Kind as KeyKind;
 pub use formula::Formula;
 pub(crate) use heat::HeatNumber;
 pub(crate) use input::{BearingNumber, Input, PumpNumber, RotorNumber, Slot};
-pub(crate) use physical::OpenNumber;
 pub(crate) use physical::steel_mass;
+pub(crate) use physical::{BEVEL_WIDTH, OpenNumber};
 pub use physical::{
     BearingMount, Housing, Jet, LossFactors, LossPart, Lubrication, OpenElement, PlanetBody, Pump, Rotor, SealMount,
     Teeth, TipRelief,

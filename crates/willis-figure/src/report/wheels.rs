@@ -41,7 +41,11 @@ pub fn sheets(train: &Train) -> Vec<Block> {
     sets.dedup();
     let mut all = vec![];
     for set in sets {
-        let meshes: Vec<&Mesh> = train.meshes().iter().filter(|m| m.set == set && m.teeth.is_some()).collect();
+        let meshes: Vec<&Mesh> = train
+            .meshes()
+            .iter()
+            .filter(|m| m.set == set && m.teeth.as_ref().is_some_and(|t| t.cones.is_none()))
+            .collect();
         let wheels = wheels(train, &meshes);
         let name = set.and_then(|k| train.sets().get(k)).map_or("pairs of gears".to_owned(), |s| s.name.clone());
         let parts = wheels.len().div_ceil(BESIDE).max(1);

@@ -359,7 +359,8 @@ impl<R: Real> Physics<'_, R> {
     fn loaded_by<'a>(&'a self, times: f64, mesh: &Mesh, teeth: &'a Teeth<R>, flow: &MeshFlow<R>) -> Loaded<'a, R> {
         let pair = &teeth.pair;
         let driver = flow.driver.unwrap_or(0);
-        let torque = real::abs(flow.torques[driver]) / f64::from(mesh.count) * times;
+        // Of bevel gears those of the virtual pair, which turns more slowly: the power is the same.
+        let torque = real::abs(flow.torques[driver]) / (f64::from(mesh.count) * teeth.cone(driver)) * times;
         let base_force = torque / pair.gears[driver].base_radius;
         Loaded {
             physics: self,
@@ -367,8 +368,10 @@ impl<R: Real> Physics<'_, R> {
             torque,
             base_force,
             normal_force: base_force / pair.cos_base_helix(),
-            pitch_line_speed: real::abs(flow.relative_speeds[driver]) * pair.gears[driver].operating_radius,
-            speed: real::abs(flow.relative_speeds[0]),
+            pitch_line_speed: real::abs(flow.relative_speeds[driver])
+                * teeth.cone(driver)
+                * pair.gears[driver].operating_radius,
+            speed: real::abs(flow.relative_speeds[0]) * teeth.cone(0),
             relief: teeth.relief(base_force),
         }
     }

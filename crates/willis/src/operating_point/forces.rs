@@ -253,7 +253,8 @@ impl<R: Real> Forces<R> {
         let none = R::from(0.0);
         let (of, shafts) = bodies(train);
         let body = |m: MemberId| of[m.0];
-        let teeth = |j: usize| numbers.teeth[j].as_ref();
+        // Bevel gears press on axes that intersect: what that does to bearings is not worked out.
+        let teeth = |j: usize| numbers.teeth[j].as_ref().filter(|t| t.cones.is_none());
         let positions: Vec<R> =
             (0..train.meshes.len()).map(|j| teeth(j).and_then(|t| t.position).unwrap_or(none)).collect();
         // Group 0 are the directions of the housing; each family of planets is one, each pair of unknown angle one.
@@ -369,7 +370,10 @@ fn seats<R: Real>(
         let own = &train.planets[p];
         let mesh = &train.meshes[own.mesh.0];
         let at: Vec<R> = (0..train.meshes.len())
-            .filter(|j| train.meshes[*j].gears.iter().any(|g| g.member == own.member) && numbers.teeth[*j].is_some())
+            .filter(|j| {
+                train.meshes[*j].gears.iter().any(|g| g.member == own.member)
+                    && numbers.teeth[*j].as_ref().is_some_and(|t| t.cones.is_none())
+            })
             .map(|j| positions[j])
             .collect();
         Seat {

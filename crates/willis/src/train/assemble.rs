@@ -64,21 +64,16 @@ impl Assembler<'_> {
             (g.z() as f64, g.internal, &g.tooth)
         });
         let alike = spec.same_sense == Some(true) && !any_internal;
-        if spec.geometry.is_some() && (spec.bevel || alike) {
-            let (message, hint) = match spec.bevel {
-                true => ("bevel teeth are not computed: a geometry describes cylindrical gears", "give `efficiency`"),
-                false => (
-                    "two external gears in mesh turn in opposite senses; a chain or belt has no tooth geometry",
-                    "give `efficiency`, or leave out `sense`",
-                ),
-            };
-            self.report(Diagnostic::new(Code::Conflict, format!("{place}.geometry"), message).hint(hint));
+        if spec.geometry.is_some() && alike && !spec.bevel {
+            let message = "two external gears in mesh turn in opposite senses; a chain or belt has no tooth geometry";
+            let d = Diagnostic::new(Code::Conflict, format!("{place}.geometry"), message);
+            self.report(d.hint("give `efficiency`, or leave out `sense`"));
         }
         let table = self.loss_table(spec, &name, place);
         let efficiency = table.as_ref().map(|(first, _)| first.clone()).or(given);
-        let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel && !alike && spec.loss_table.is_none());
+        let geometry = spec.geometry.as_ref().filter(|_| (spec.bevel || !alike) && spec.loss_table.is_none());
         let hand = geometry.and_then(|g| g.hand).map_or(0.0, Hand::sign);
-        let teeth = geometry.and_then(|g| self.tooth_pair(g, gears_of_pair, &name, place));
+        let teeth = geometry.and_then(|g| self.tooth_pair(g, gears_of_pair, spec.bevel, &name, place));
         let teeth = teeth.map(|t| Teeth { hand, ..t });
         let computed = efficiency.is_none() && teeth.is_some();
         if efficiency.is_some() && teeth.is_some() {

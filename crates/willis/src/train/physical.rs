@@ -11,11 +11,17 @@ use super::dynamic::Curve;
 use super::specification::{Fluid, JetSide, OilSupply};
 use super::{MemberId, Mesh, MeshId};
 
+/// Part of the face width of bevel gears that carries, ISO 10300-1. Confirm.
+pub(crate) const BEVEL_WIDTH: f64 = 0.85;
+
 /// Teeth of a mesh.
 #[derive(Clone, Debug)]
 pub struct Teeth<R = f64> {
-    /// The involute pair; its wheels stand in the order of the mesh's gears.
+    /// The involute pair; its wheels stand in the order of the mesh's gears. Of bevel gears the virtual cylindrical pair at the
+    /// middle of the face width: `z_v = z/cos δ`, `d_v = d_m/cos δ` (Tredgold), on the part of the width that carries.
     pub pair: Pair<R>,
+    /// `cos δ` of the two pitch cones of bevel gears: the virtual gears turn so many times as fast. None of cylindrical gears.
+    pub cones: Option<[f64; 2]>,
     /// Arithmetic mean roughness of both flanks, m.
     pub roughness: [R; 2],
     /// Depth of immersion of both gears at rest, m.
@@ -52,6 +58,11 @@ pub struct TipRelief<R = f64> {
 }
 
 impl<R: Real> Teeth<R> {
+    /// Speed of a gear of the pair over that of the gear of the mesh: 1, of bevel gears `cos δ`.
+    pub(crate) fn cone(&self, gear: usize) -> f64 {
+        self.cones.map_or(1.0, |c| c[gear])
+    }
+
     /// Reduced modulus `E' = E/(1 − ν²)` of two equal materials, Pa.
     pub fn reduced_modulus(&self) -> R {
         self.youngs_modulus / (-(self.poisson_ratio * self.poisson_ratio) + 1.0)

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod bevel;
 mod components;
 mod geometry;
 mod laws;

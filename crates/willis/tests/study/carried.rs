@@ -130,7 +130,8 @@ fn generated() -> Vec<(&'static str, String)> {
             "bevel",
             &format!(
                 "sides = [{{ member = 'sun', teeth = 30, planet_teeth = 15, side = 'left' }}, {{ member = 'frame', teeth = 30, \
-                 planet_teeth = 15, side = 'right' }}]\nplanet = {{ teeth = 15, count = 2, {}, {} }}\nbasic_efficiency = 0.98\n",
+                 planet_teeth = 15, side = 'right' }}]\nplanet = {{ teeth = 15, count = 2, {}, {} }}\nbasic_efficiency = 0.98\n\
+                 geometry = {{ module = '4 mm', width = '20 mm', shaft_angle = '85 deg' }}\n",
                 body(60.0),
                 tooth(tip)
             ),
@@ -488,7 +489,7 @@ fn what_is_not_carried_changes_nothing() {
         keys(&text.parse::<toml::Table>().unwrap().into(), "", &mut all);
         // Where losses are computed, which takes time, two formats.
         let kinds = KINDS.iter().map(|k| k.id).enumerate();
-        for (_, kind) in kinds.filter(|(k, _)| !model.train().is_physical() || (i + k).is_multiple_of(4)) {
+        for (_, kind) in kinds.filter(|(k, _)| !model.train().is_physical() || (i + k).is_multiple_of(8)) {
             let request = few(&model, kind);
             let Ok(whole) = export(&model, kind, &request) else { continue };
             // What weighs is there as a whole or not at all: without the part that is unknown the rest is there.

@@ -7,7 +7,9 @@ use crate::geometry::{Pair, PairData, Tip};
 use crate::operating_point::{
     DragNumbers, MountNumbers, Numbers, OilState, PumpNumbers, RotorNumbers, VariatorNumbers,
 };
-use crate::train::{BearingNumber, Jet, LossPart, PumpNumber, RotorNumber, Slot, Teeth, TipRelief, Train, steel_mass};
+use crate::train::{
+    BEVEL_WIDTH, BearingNumber, Jet, LossPart, PumpNumber, RotorNumber, Slot, Teeth, TipRelief, Train, steel_mass,
+};
 
 /// A number that nothing depends on.
 fn constant(value: f64) -> Dual64 {
@@ -28,8 +30,14 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
             teeth.push(None);
             continue;
         };
+        let mut data = pair_data(&t.pair.data, j, &seeded);
+        if t.cones.is_some() {
+            // The width of the file is that of the real teeth.
+            data.width.eps *= BEVEL_WIDTH;
+        }
         teeth.push(Some(Teeth {
-            pair: Pair::new(&pair_data(&t.pair.data, j, &seeded)).ok()?,
+            pair: Pair::new(&data).ok()?,
+            cones: t.cones,
             roughness: [0, 1].map(|k| seeded(Slot::Roughness(j, k), t.roughness[k])),
             immersion: [0, 1].map(|k| t.immersion[k].map(|depth| seeded(Slot::Immersion(j, k), depth))),
             jet: t.jet.map(|jet| Jet {

@@ -56,7 +56,10 @@ impl Assembler<'_> {
     pub fn hands(&mut self, bearings: bool) {
         let helical: Vec<usize> = (0..self.meshes.len())
             .filter(|j| {
-                self.meshes[*j].teeth.as_ref().is_some_and(|t| t.pair.data.helix != 0.0 && !t.pair.data.double_helical)
+                self.meshes[*j]
+                    .teeth
+                    .as_ref()
+                    .is_some_and(|t| t.cones.is_none() && t.pair.data.helix != 0.0 && !t.pair.data.double_helical)
             })
             .collect();
         // One sign a mesh, that of its first gear.

@@ -9,8 +9,8 @@ use crate::losses::loss_factor::Path;
 use crate::losses::seal::Material;
 use crate::train::assembler::Assembler;
 use crate::train::physical::{
-    BearingMount, Jet, Known, LossFactors, LossPart, Lubrication, OpenElement, PlanetBody, Pump, Rotor, SealMount,
-    Teeth, TipRelief, steel_mass,
+    BEVEL_WIDTH, BearingMount, Jet, Known, LossFactors, LossPart, Lubrication, OpenElement, PlanetBody, Pump, Rotor,
+    SealMount, Teeth, TipRelief, steel_mass,
 };
 use crate::train::specification::{
     Fluid, JetSide, LawsSpec, MeshStiffness, PlainBearing, PlainGeometry, PlainHousing, PlainLossFactor, PlainLosses,
@@ -76,10 +76,21 @@ impl Assembler<'_> {
         &mut self,
         g: &PlainGeometry,
         gears: [(f64, bool, &PlainTooth); 2],
+        bevel: bool,
         title: &str,
         place: &str,
     ) -> Option<Teeth> {
         let at = format!("{place}.geometry");
+        let cones = match (bevel, g.shaft_angle) {
+            (true, _) => Some(self.cones(g, gears, title, &at)?),
+            (false, Some(_)) => {
+                let message = format!("{}: a shaft angle, but the axes of cylindrical gears are parallel", clip(title));
+                let d = Diagnostic::new(Code::Conflict, format!("{at}.shaft_angle"), message);
+                self.report_once(d.hint("leave it out, or make it a bevel pair"));
+                return None;
+            }
+            (false, None) => None,
+        };
         let mut good = true;
         for (value, zero, what, unit, key) in [
             (g.module * 1e3, false, "a module", "mm", "module"),
@@ -129,12 +140,12 @@ impl Assembler<'_> {
         if !good {
             return None;
         }
-        let wheel = |(teeth, internal, t): &(f64, bool, &PlainTooth)| Wheel {
-            teeth: *teeth,
+        let wheel = |k: usize, (teeth, internal, t): &(f64, bool, &PlainTooth)| Wheel {
+            teeth: cones.map_or(*teeth, |c: [f64; 2]| teeth / c[k]),
             internal: *internal,
             shift: t.shift.unwrap_or(0.0),
             tip: match t.tip_diameter {
-                Some(d) => Tip::Radius(d / 2.0),
+                Some(d) => Tip::Radius(d / (2.0 * cones.map_or(1.0, |c| c[k]))),
                 None => Tip::Addendum {
                     coefficient: t.addendum.unwrap_or(g.addendum()),
                     alteration: t.tip_alteration.unwrap_or(0.0),
@@ -147,9 +158,9 @@ impl Assembler<'_> {
             pressure_angle: g.pressure_angle(),
             helix: g.helix(),
             double_helical: g.double_helical,
-            width: g.width,
+            width: if bevel { g.width * BEVEL_WIDTH } else { g.width },
             centre_distance: g.centre_distance,
-            wheels: [wheel(&gears[0]), wheel(&gears[1])],
+            wheels: [wheel(0, &gears[0]), wheel(1, &gears[1])],
         };
         // With the other sign of the ring's shift, as DIN has it, the teeth may fit.
         let turned = |remarks: usize| {
@@ -205,6 +216,7 @@ impl Assembler<'_> {
         let relief = self.tip_relief(g, &pair, gears.map(|(_, _, t)| t), title, place);
         Some(Teeth {
             pair,
+            cones,
             roughness: roughness.map(|r| r.unwrap_or(ROUGHNESS)),
             immersion: gears.map(|(_, _, t)| t.immersion),
             hand: 0.0,
@@ -221,6 +233,71 @@ impl Assembler<'_> {
             stiffness_by_standard: g.mesh_stiffness == Some(MeshStiffness::Iso6336),
             relief,
         })
+    }
+
+    /// `cos δ` of the pitch cones of bevel gears: `tan δ₁ = sin Σ/(z₂/z₁ + cos Σ)`, `δ₂ = Σ − δ₁`. None where they cannot be, or
+    /// where something is said of them that holds for cylindrical gears only.
+    fn cones(
+        &mut self,
+        g: &PlainGeometry,
+        gears: [(f64, bool, &PlainTooth); 2],
+        title: &str,
+        at: &str,
+    ) -> Option<[f64; 2]> {
+        let before = self.diagnostics.len();
+        let mut wrong = |code, key: &str, message: String, hint: &str| {
+            let d = Diagnostic::new(code, format!("{at}.{key}"), format!("{}: {message}", clip(title)));
+            self.report_once(d.hint(hint));
+        };
+        let angle = g.shaft_angle.unwrap_or(std::f64::consts::FRAC_PI_2);
+        let (z1, z2) = (gears[0].0, gears[1].0);
+        let first = angle.sin().atan2(z2 / z1 + angle.cos());
+        let all = [first, angle - first];
+        if !(angle > 0.0 && angle < std::f64::consts::PI && all.iter().all(|d| d.cos() > 0.05)) {
+            let message = format!(
+                "axes at {:.2}° with {z1} and {z2} teeth give pitch cones of {:.2}° and {:.2}°: both are below 87°",
+                angle.to_degrees(),
+                all[0].to_degrees(),
+                all[1].to_degrees()
+            );
+            wrong(Code::ImpossibleGeometry, "shaft_angle", message, "90 deg is usual");
+        }
+        if gears.iter().any(|g| g.1) {
+            wrong(Code::Conflict, "module", "internal bevel gears are not computed".into(), "give `efficiency`");
+        }
+        for (is, key) in [
+            (g.centre_distance.is_some(), "centre_distance"),
+            (g.double_helical, "double_helical"),
+            (g.hand.is_some(), "hand"),
+            (g.position.is_some(), "position"),
+            (g.external_mesh_stiffness.is_some(), "external_mesh_stiffness"),
+            (g.internal_mesh_stiffness.is_some(), "internal_mesh_stiffness"),
+            (g.mesh_stiffness.is_some(), "mesh_stiffness"),
+        ] {
+            if is {
+                wrong(
+                    Code::Conflict,
+                    key,
+                    format!("`{key}` is of cylindrical gears"),
+                    "leave it out: this is a bevel pair",
+                );
+            }
+        }
+        let shifts = gears.map(|g| g.2.shift.unwrap_or(0.0));
+        if (shifts[0] + shifts[1]).abs() > 1e-9 {
+            let message =
+                format!("profile shifts of {} and {}: those of bevel gears are opposite", shifts[0], shifts[1]);
+            wrong(Code::ImpossibleGeometry, "module", message, "give `shift` with the other sign to one of the two");
+        }
+        if self.diagnostics.len() > before {
+            return None;
+        }
+        self.assume(
+            title,
+            "bevel teeth, as the virtual cylindrical pair at the middle of the face width on 85 % of it; their module is the normal one \
+             there, and their forces load no bearing",
+        );
+        Some(all.map(f64::cos))
     }
 
     /// Tip relief of the gears of a pair.
@@ -856,7 +933,7 @@ impl Assembler<'_> {
                 let member = mesh.gears[k].member;
                 let other = mesh.gears[1 - k].member;
                 let revolves = planets[member.0] && !planets[other.0];
-                let Some(teeth) = mesh.teeth.as_ref().filter(|_| revolves) else { continue };
+                let Some(teeth) = mesh.teeth.as_ref().filter(|t| revolves && t.cones.is_none()) else { continue };
                 if all.iter().any(|p| p.member == member) {
                     continue;
                 }
@@ -875,7 +952,9 @@ impl Assembler<'_> {
             let bearing = bearings.iter().find(|b| b.members.contains(&body.member));
             let hole = bearing.map_or(0.0, |b| b.bearing.outside_diameter / 2.0);
             let root = (self.meshes.iter())
-                .flat_map(|m| m.teeth.iter().flat_map(|t| m.gears.iter().zip(&t.pair.gears)))
+                .flat_map(|m| {
+                    m.teeth.iter().filter(|t| t.cones.is_none()).flat_map(|t| m.gears.iter().zip(&t.pair.gears))
+                })
                 .filter(|(g, _)| g.member == body.member && !g.internal)
                 .map(|(_, own)| own.root_radius)
                 .fold(f64::INFINITY, f64::min);

@@ -17,10 +17,10 @@ pub(super) fn teeth(e: &mut Expansion<'_, '_>, pairs: &[Pair<'_>]) -> Vec<Option
     let has_sun = pairs.iter().any(|p| p.central.is_some_and(|c| !c.internal));
     for p in pairs {
         let own = p.central.and_then(|c| c.geometry.as_ref());
-        let geometry = if p.bevel { None } else { own.or(e.set.geometry.as_ref()) };
+        let geometry = own.or(e.set.geometry.as_ref());
         let gears = [&p.gears[0], &p.gears[1]].map(|g| (g.teeth.to_f64(), g.internal, &g.tooth));
         let title = format!("{}.{}", e.set.name, p.name);
-        let teeth = geometry.and_then(|g| e.a.tooth_pair(g, gears, &title, &e.place));
+        let teeth = geometry.and_then(|g| e.a.tooth_pair(g, gears, p.bevel, &title, &e.place));
         // What a set says holds for its suns, what a gear says for itself. A sun stands first in its pair; a ring
         // stands second, and the planet that stands first has its hand.
         let named = p.central.is_some_and(|c| own.is_some() || c.internal != has_sun);
@@ -36,7 +36,7 @@ fn concentric(e: &mut Expansion<'_, '_>, pairs: &[Pair<'_>], teeth: &[Option<Tee
     let central: Vec<(&Pair<'_>, &Teeth)> = pairs
         .iter()
         .zip(teeth)
-        .filter(|(p, _)| p.central.is_some())
+        .filter(|(p, _)| p.central.is_some() && !p.bevel)
         .filter_map(|(p, t)| Some((p, t.as_ref()?)))
         .collect();
     for (k, (p, t)) in central.iter().enumerate() {

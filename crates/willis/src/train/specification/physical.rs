@@ -177,6 +177,8 @@ specification! {
         may position: Option<Length>,
         /// Operating centre distance. Default: the one that follows from the profile shifts.
         may centre_distance: Option<Length>,
+        /// Angle between the axes of bevel gears. Default: 90 deg.
+        may shaft_angle: Option<Angle>,
         /// Addendum coefficient of the basic rack. Default: 1.
         may addendum: Option<f64>,
         /// Dedendum coefficient of the basic rack. Default: 1.25.

@@ -216,7 +216,7 @@ pub(crate) const SETS: &[TypedTable] = &[
     ("double-planet", &table_of::<DoublePlanetSpec>(&[HEAD, DoublePlanetSpec::KEYS, TAIL])),
     ("stepped", &table_of::<SteppedSpec>(&[HEAD, SteppedSpec::KEYS, TAIL])),
     ("ravigneaux", &table_of::<RavigneauxSpec>(&[HEAD, RavigneauxSpec::KEYS, TAIL])),
-    ("bevel", &table_of::<BevelSpec>(&[HEAD, BevelSpec::KEYS, &[CARRIER, MESH_EFFICIENCY, BASIC_EFFICIENCY]])),
+    ("bevel", &table_of::<BevelSpec>(&[HEAD, BevelSpec::KEYS, TAIL])),
 ];
 
 impl SetSpec {
