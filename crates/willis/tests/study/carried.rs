@@ -145,6 +145,7 @@ fn generated() -> Vec<(&'static str, String)> {
              [[mesh]]\nname = 'R'\ngears = [{{ member = 'lay', teeth = 20 }}, {{ member = 'mid', teeth = 60, internal = true }}]\n\
              efficiency = 0.98\n\
              [[mesh]]\nname = 'H'\ngears = [{{ member = 'mid', teeth = 20 }}, {{ member = 'end', teeth = 40 }}]\nkind = 'bevel'\n\
+             geometry = {{ module = '3 mm', width = '20 mm', shaft_angle = '80 deg' }}\n\
              efficiency = {{ forward = 0.97, backward = 0.96 }}\n\
              [[mesh]]\nname = 'K'\ngears = [{{ member = 'end', teeth = 20 }}, {{ member = 'carrier', teeth = 30 }}]\nsense = 'same'\n\
              loss_table = [{{ speed = '0 rpm', forward = 0.96, backward = 0.95, forward_torque = '1 N m', \
@@ -440,6 +441,8 @@ fn no_key_of_the_schema_is_missing_from_the_generated_files() {
         })
         // A table is another file.
         .filter(|key| key != "variator.machines.efficiency.map")
+        // Gears of their own geometry are those of stepped sets, which are cylindrical.
+        .filter(|key| !["set.suns.geometry.shaft_angle", "set.rings.geometry.shaft_angle"].contains(&key.as_str()))
         .collect();
     assert!(missing.is_empty(), "add them to a file: {missing:?}");
     assert!(schema_keys().len() > 150, "{}", schema_keys().len());
