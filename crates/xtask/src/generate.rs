@@ -7,6 +7,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::context::Context;
+use crate::reference::{PAGES, PARTS, write_reference};
 use crate::step::{Outcome, outcome, tested};
 use crate::tested::{test, test_with};
 
@@ -228,7 +229,9 @@ fn write_generated(context: &Context) -> Result<(), String> {
         let from = context.root.join("examples").join(copy.rsplit('/').next().expect("a name"));
         fs::copy(&from, context.root.join(copy)).map_err(|e| format!("{}: {e}", from.display()))?;
     }
-    write_pages(context)
+    write_pages(context)?;
+    // Its counts are those of the pages.
+    write_reference(context)
 }
 
 /// Writes the pages of `validation`.
@@ -258,6 +261,9 @@ pub(crate) fn generate(context: &Context) -> Outcome {
 fn there(context: &Context) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut names: Vec<String> =
         GENERATED.iter().chain(FIGURES.iter().map(|f| &f.0)).map(|n| (*n).to_owned()).collect();
+    names.extend(PAGES.iter().map(|p| p.0).chain(PARTS.iter().map(|p| p.0)).map(str::to_owned));
+    names.sort();
+    names.dedup();
     // A folder that is not there has no file.
     for entry in fs::read_dir(context.root.join(ANSWERS)).into_iter().flatten() {
         let name = entry.map_err(|e| format!("{ANSWERS}: {e}"))?.file_name();

@@ -14,6 +14,7 @@ mod measure;
 mod package;
 mod pdf;
 mod python;
+mod reference;
 mod step;
 mod studio;
 mod tested;
@@ -72,6 +73,7 @@ const STEPS: &[Step] = &[
 /// Tasks that are no steps of `ci`, but are shown like steps.
 const TASKS: &[Step] = &[
     Step::new("generate", "write the generated files", Action::Call(generate::generate)),
+    Step::new("reference", "of the generated files the reference pages of the book only", Action::Call(reference::reference)),
     Step::new(
         "validate",
         "write the validation pages, then compare every number of others with ours; [--modelica FOLDER] whole trajectories",
