@@ -103,6 +103,13 @@ fn commands(context: &Context) -> Result<String, String> {
          Exit status: 0 the question was answered (a locked train is an answer), 1 the input or a value is wrong, 2 the command \
          line cannot be read, 130 after Ctrl-C.\n\n"
     );
+    page += "| question | what it answers |\n|---|---|\n";
+    for question in list(&data(context, &["schema", "list"])?) {
+        let about = text(question, "about").split("\n\n").next().unwrap_or_default();
+        writeln!(page, "| `{}` | {} |", text(question, "usage"), cell(about)).expect("to a text");
+    }
+    page += "\nBeside the questions there are `willis merge` (shards of a sweep), `willis studio`, `willis schema` (JSON Schema of the train \
+             file, of every answer and every request), `willis completions` and `willis man`.\n\n";
     for name in command_names(context)?.iter().filter(|n| *n != "help") {
         let help = printed(context, &["help", name])?;
         write!(page, "## willis {name}\n\n```text\n{}\n```\n\n", help.trim_end()).expect("to a text");
