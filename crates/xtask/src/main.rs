@@ -15,6 +15,7 @@ mod package;
 mod pdf;
 mod python;
 mod reference;
+mod site;
 mod step;
 mod studio;
 mod tested;
@@ -85,6 +86,12 @@ const TASKS: &[Step] = &[
         Action::Call(fuzz::fuzz),
     )
     .may_skip(),
+    Step::new(
+        "site",
+        "book, gallery, validation pages, studio and references as one folder of pages; [--studio FILE] one that is built; [--no-api]",
+        Action::Call(site::site),
+    )
+    .may_skip(),
     Step::new("bench", "benchmarks of the library", Action::Call(bench::bench)),
     Step::new(
         "measure",
@@ -129,6 +136,14 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
             ("validate", "--modelica", [folder, more @ ..]) => {
                 // Tests run in the folder of their crate.
                 options.modelica = Some(std::path::absolute(folder).ok()?);
+                more
+            }
+            ("site", "--studio", [file, more @ ..]) => {
+                options.studio = Some(std::path::absolute(file).ok()?);
+                more
+            }
+            ("site", "--no-api", more) => {
+                options.no_api = true;
                 more
             }
             ("measure", "--build", more) => {

@@ -83,7 +83,26 @@ fn list(value: &Value) -> &[Value] {
 
 /// Fit for a cell of a table.
 fn cell(text: &str) -> String {
-    text.replace('|', "\\|").replace('\n', " ")
+    without_paths(text).replace('|', "\\|").replace('\n', " ")
+}
+
+/// Text whose links to items of the library, `[words](module::item)`, are words only.
+fn without_paths(text: &str) -> String {
+    let mut all = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once("](") {
+        match (before.rfind('['), after.split_once(')')) {
+            (Some(open), Some((target, after))) if target.contains("::") => {
+                all = all + &before[..open] + &before[open + 1..];
+                rest = after;
+            }
+            _ => {
+                all = all + before + "](";
+                rest = after;
+            }
+        }
+    }
+    all + rest
 }
 
 // Commands
@@ -155,7 +174,7 @@ fn answers(context: &Context) -> Result<String, String> {
     for question in list(&questions) {
         let name = text(question, "name");
         let schema = data(context, &["schema", name])?;
-        write!(page, "## {}\n\n`{}`: {}\n\n", text(question, "answer"), text(question, "usage"), text(&schema, "description"))
+        write!(page, "## {}\n\n`{}`: {}\n\n", text(question, "answer"), text(question, "usage"), without_paths(text(&schema, "description")))
             .expect("to a text");
         let names = |field: &str| {
             let all = list(&question[field]).iter().filter_map(Value::as_str);
@@ -403,7 +422,7 @@ fn laws(context: &Context) -> Result<String, String> {
         write!(page, "### {family}={id}{default}\n\n{}\n\n", text(law, "title")).expect("to a text");
         let formula = formulas.get(&(family.to_owned(), id.to_owned()));
         let formula = formula.ok_or_else(|| format!("the documentation of the law {family}={id} has no formula"))?;
-        write!(page, "{formula}\n\n").expect("to a text");
+        write!(page, "{}\n\n", without_paths(formula)).expect("to a text");
         let ranges: Vec<_> = list(&law["valid"]).iter().map(range).collect();
         let ranges = if ranges.is_empty() { "not limited".into() } else { ranges.join("; ") };
         write!(
@@ -576,6 +595,11 @@ mod tests {
         assert!(told.contains("3 values have a gate, 2 hold and 1 miss"), "{told}");
         assert!(told.contains("| 1 % | 1 | 1 | 0 | 0.5 % |"), "{told}");
         assert!(told.contains("| a factor of 2 | 2 | 1 | 1 | 75.0 % |"), "{told}");
+    }
+
+    #[test]
+    fn paths_of_the_library_are_left_out() {
+        assert_eq!(without_paths("as [`Skf`](super::Skf) has it, [here](a.md)"), "as `Skf` has it, [here](a.md)");
     }
 
     #[test]
