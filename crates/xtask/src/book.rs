@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::context::{Context, passes, said};
 use crate::examples::example_files;
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// A command of the prose and what it is said to print.

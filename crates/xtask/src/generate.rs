@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::process::Command;
 
 use serde_json::Value;
 
 use crate::context::Context;
+use crate::program::build_willis;
 use crate::reference::{PAGES, PARTS, write_reference};
 use crate::step::{Outcome, outcome, tested};
 use crate::tested::{test, test_with};
@@ -295,18 +295,4 @@ fn compare(context: &Context) -> Result<(), String> {
     }
     written?;
     if stale.is_empty() { Ok(()) } else { Err(format!("{}: run `cargo xtask generate`", stale.join("; "))) }
-}
-
-/// Builds the optimised program, and with it the Python package: alone each has other features of the same dependencies, so that
-/// everything above them would be compiled twice.
-pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli -p willis-py";
-
-/// What can be built before it is needed.
-pub(crate) fn builds(context: &Context) -> Vec<Command> {
-    vec![context.words(RELEASE)]
-}
-
-/// The optimised program, without a word where it is there.
-pub(crate) fn build_willis(context: &Context) -> Result<(), String> {
-    context.run(&format!("{RELEASE} --quiet"))
 }

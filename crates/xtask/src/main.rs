@@ -13,6 +13,7 @@ mod licences;
 mod measure;
 mod package;
 mod pdf;
+mod program;
 mod python;
 mod reference;
 mod site;
@@ -48,7 +49,7 @@ const STEPS: &[Step] = &[
         .env(&[("RUSTDOCFLAGS", "-D warnings")])
         .in_check(),
     Step::new("package", "every published crate holds what it needs", Action::Call(package::package)),
-    Step::new("release", "the optimised program", Action::Run(generate::RELEASE)).ahead(generate::builds),
+    Step::new("release", "the optimised program", Action::Run(program::RELEASE)).ahead(program::builds),
     Step::new(
         "generated",
         "generated files are as `cargo xtask generate` writes them",

@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 
 use crate::context::Context;
 use crate::examples::example_files;
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// A page of the book that is generated as a whole, and what writes it.

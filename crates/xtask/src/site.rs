@@ -11,7 +11,7 @@ use toml::Value;
 use crate::book::mdbook;
 use crate::context::{Context, passes, said};
 use crate::examples::example_files;
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::reference::about;
 use crate::step::Outcome;
 use crate::studio::studio_page;
@@ -417,6 +417,9 @@ no-section-label = true
 additional-css = ["search.css"]
 additional-js = ["search-index.js", "search.js"]
 
+[output.html.playground]
+runnable = false
+
 [output.html.fold]
 enable = true
 level = 0
@@ -426,7 +429,7 @@ enable = false
 "#;
 
 const STYLE: &str = "
-#find { width: 14em; max-width: 38vw; margin: 0 .5em; padding: .2em .5em; font-size: 1.4rem; border: 1px solid var(--icons);
+#find { align-self: center; width: 14em; max-width: 38vw; margin: 0 .5em; padding: .2em .5em; font-size: 1.4rem; border: 1px solid var(--icons);
   border-radius: 4px; background: var(--bg); color: var(--fg); }
 #found { position: absolute; right: 1em; top: 100%; width: min(36em, 92vw); max-height: 70vh; overflow: auto; z-index: 200;
   background: var(--bg); color: var(--fg); border: 1px solid var(--icons); font-size: 1.4rem; }
@@ -437,6 +440,7 @@ const STYLE: &str = "
 .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(15em, 1fr)); gap: 1.5em; }
 .gallery img { width: 100%; height: 11em; object-fit: contain; object-position: left bottom; }
 .content img { max-width: 100%; }
+.content thead:not(:has(th:not(:empty))) { display: none; }
 .content table { display: block; overflow-x: auto; }
 @media (max-width: 600px) { .menu-title { display: none; } #find { width: 34vw; } }
 ";
@@ -514,7 +518,7 @@ fn index(pages: &Path) -> Result<String, String> {
                 section = Some((heading.replace('`', ""), format!("{address}#{anchor}"), String::new()));
             } else if let Some((.., text)) = section.as_mut().filter(|s| s.2.len() < 1500) {
                 if !line.starts_with("```") && !line.starts_with("|---") && !line.starts_with("![") {
-                    *text += line.trim();
+                    *text += &without_marks(line.trim());
                     text.push(' ');
                 }
             }
@@ -534,6 +538,18 @@ fn index(pages: &Path) -> Result<String, String> {
         .collect();
     let json = serde_json::to_string(&rows).map_err(|e| format!("the index of the search: {e}"))?;
     Ok(format!("window.willisIndex = {json};\n"))
+}
+
+/// A line without what marks links and code.
+fn without_marks(line: &str) -> String {
+    let mut all = String::with_capacity(line.len());
+    let mut rest = line;
+    while let Some((before, after)) = rest.split_once("](") {
+        all += before;
+        rest = after.split_once(')').map_or("", |(_, rest)| rest);
+    }
+    all += rest;
+    all.replace(['[', '`', '|', '*'], "")
 }
 
 /// The anchor of a heading, as mdBook makes it.
@@ -670,6 +686,11 @@ mod tests {
             without_lost_links(text, Path::new("/")),
             "see one and [two](https://example.org), [three](#three)"
         );
+    }
+
+    #[test]
+    fn texts_of_the_search_have_no_marks() {
+        assert_eq!(without_marks("see [one](a.md#b) and `two`, *three*"), "see one and two, three");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::context::{Context, Options, passes, said};
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::step::Outcome;
 
 const TARGET: &str = "wasm32-unknown-unknown";
