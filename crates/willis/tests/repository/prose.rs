@@ -167,6 +167,15 @@ fn every_chapter_has_a_figure() {
 }
 
 #[test]
+fn every_chapter_opens_with_its_question() {
+    for page in pages().iter().filter(|p| p.starts_with("book/") && !is_generated(p) && !p.ends_with("SUMMARY.md")) {
+        let text = read(&root().join(page));
+        let question = text.split("\n\n").nth(1).unwrap_or_default();
+        assert!(question.contains('*') && question.contains('?'), "{page} does not open with its question");
+    }
+}
+
+#[test]
 fn every_figure_is_shown() {
     let shown: BTreeSet<String> = pages()
         .iter()
