@@ -85,9 +85,11 @@ fn of(entry: &Entry) -> Command {
                     .value_name("FAMILY=LAW")
                     .help("Use this loss law instead of the file's; repeatable: mesh_friction=niemann"),
             )
-            .arg(many("set").value_name("QUANTITY=VALUE").help(
-                "Use this value of a quantity instead of the file's; repeatable: P1.sun.teeth=23",
-            ))
+            .arg(
+                many("set")
+                    .value_name("QUANTITY=VALUE")
+                    .help("Use this value of a quantity instead of the file's; repeatable: P1.sun.teeth=23"),
+            )
             .arg(Arg::new("speed-tolerance").long("speed-tolerance").value_name("PART").value_parser(part).help(
                 "Measured speeds: they may contradict the gears by this part, 0.5% or 0.005; the answer tells by how \
                  much they do at worst",

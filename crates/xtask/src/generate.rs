@@ -167,18 +167,48 @@ const FIGURES: &[(&str, &[&str])] = &[
         &["draw", "tornado", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"],
     ),
     ("book/src/figures/nrel-band.svg", &["draw", "band", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
-    ("book/src/figures/esmail-regimes.svg", &["draw", "regimes", "examples/esmail-table-1.toml", "--theme", "auto", "-o"]),
-    ("book/src/figures/two-efficiencies-lever.svg", &["draw", "lever", "examples/two-efficiencies.toml", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/esmail-regimes.svg",
+        &["draw", "regimes", "examples/esmail-table-1.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/two-efficiencies-lever.svg",
+        &["draw", "lever", "examples/two-efficiencies.toml", "--theme", "auto", "-o"],
+    ),
     ("book/src/figures/prius-lever.svg", &["draw", "lever", "examples/prius-p112.toml", "--theme", "auto", "-o"]),
-    ("book/src/figures/c4-front.svg", &["draw", "front", "examples/simpson-ford-c4.toml", "--nominal", "--theme", "auto", "-o"]),
-    ("book/src/figures/wolfrom-front.svg", &["draw", "front", "examples/wolfrom-498-self-locking.toml", "--nominal", "--theme", "auto", "-o"]),
-    ("book/src/figures/wolfrom-stick.svg", &["draw", "stick", "examples/wolfrom-498-self-locking.toml", "--theme", "auto", "-o"]),
-    ("book/src/figures/bevel-stick.svg", &["draw", "stick", "examples/bevel-differential.toml", "--theme", "auto", "-o"]),
-    ("book/src/figures/ravigneaux-stick.svg", &["draw", "stick", "examples/aisin-tl-80sn.toml", "--state", "3", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/c4-front.svg",
+        &["draw", "front", "examples/simpson-ford-c4.toml", "--nominal", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/wolfrom-front.svg",
+        &["draw", "front", "examples/wolfrom-498-self-locking.toml", "--nominal", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/wolfrom-stick.svg",
+        &["draw", "stick", "examples/wolfrom-498-self-locking.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/bevel-stick.svg",
+        &["draw", "stick", "examples/bevel-differential.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/ravigneaux-stick.svg",
+        &["draw", "stick", "examples/aisin-tl-80sn.toml", "--state", "3", "--theme", "auto", "-o"],
+    ),
     ("book/src/figures/gen4-shift.svg", &["draw", "shift", "examples/zf-8hp-gen4.toml", "--theme", "auto", "-o"]),
-    ("book/src/figures/fva-tornado.svg", &["draw", "tornado", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"]),
-    ("book/src/figures/fva-band.svg", &["draw", "band", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"]),
-    ("book/src/figures/fva-losses.svg", &["draw", "losses", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/fva-tornado.svg",
+        &["draw", "tornado", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/fva-band.svg",
+        &["draw", "band", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/fva-losses.svg",
+        &["draw", "losses", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"],
+    ),
     ("book/src/figures/nrel-film.svg", &["draw", "film", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
 ];
 

@@ -174,8 +174,14 @@ fn answers(context: &Context) -> Result<String, String> {
     for question in list(&questions) {
         let name = text(question, "name");
         let schema = data(context, &["schema", name])?;
-        write!(page, "## {}\n\n`{}`: {}\n\n", text(question, "answer"), text(question, "usage"), without_paths(text(&schema, "description")))
-            .expect("to a text");
+        write!(
+            page,
+            "## {}\n\n`{}`: {}\n\n",
+            text(question, "answer"),
+            text(question, "usage"),
+            without_paths(text(&schema, "description"))
+        )
+        .expect("to a text");
         let names = |field: &str| {
             let all = list(&question[field]).iter().filter_map(Value::as_str);
             all.map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ")
@@ -191,7 +197,8 @@ fn answers(context: &Context) -> Result<String, String> {
             page += "| field | value | meaning |\n|---|---|---|\n";
             for (field, of) in fields {
                 let value = value_of(of);
-                writeln!(page, "| `{field}` | {} | {} |", cell(&value), cell(text(of, "description"))).expect("to a text");
+                writeln!(page, "| `{field}` | {} | {} |", cell(&value), cell(text(of, "description")))
+                    .expect("to a text");
             }
             page += "\n";
         }
@@ -277,7 +284,12 @@ fn branches(schema: &Value) -> Vec<&Value> {
     }
     // Of a choice by `type` the branches say everything.
     let by_type = all.iter().any(|b| b["properties"]["type"].get("const").is_some());
-    all.retain(|b| !by_type || b["properties"].as_object().is_some_and(|p| p.len() > 1 || b["properties"]["type"].get("const").is_some()));
+    all.retain(|b| {
+        !by_type
+            || b["properties"]
+                .as_object()
+                .is_some_and(|p| p.len() > 1 || b["properties"]["type"].get("const").is_some())
+    });
     all
 }
 
@@ -331,8 +343,9 @@ fn keys(context: &Context) -> Result<String, String> {
     write_keys(top, &schema["required"], &mut page);
     let mut seen = BTreeMap::new();
     for (key, of) in top {
-        let name = match text(of, "type") {
-            "array" => format!("[[{key}]]"),
+        let name = match (text(of, "type"), value_of(of).as_str()) {
+            ("array", "tables") => format!("[[{key}]]"),
+            ("array", _) => format!("an entry of {key}"),
             _ => format!("[{key}]"),
         };
         table(&name, 2, of, &mut seen, &mut page);
@@ -492,7 +505,8 @@ fn counts(context: &Context) -> Result<String, String> {
         let all = of.agree + of.differ;
         writeln!(text, "| {says} | {} | {all} | {} | {} |", of.cases, of.agree, of.differ).expect("to a text");
     }
-    let gates = gates(&read("validation/losses/README.md")?).ok_or("validation/losses/README.md: no gates were found")?;
+    let gates =
+        gates(&read("validation/losses/README.md")?).ok_or("validation/losses/README.md: no gates were found")?;
     Ok(text + &gates)
 }
 
@@ -509,7 +523,8 @@ fn gates(page: &str) -> Option<String> {
     let read = |line: &str| {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
         let ["", _, printed, ours, low, high, verdict, ""] = cells[..] else { return None };
-        let [printed, ours, low, high] = [printed, ours, low, high].map(|c| c.parse::<f64>().ok().filter(|n| n.is_finite()));
+        let [printed, ours, low, high] =
+            [printed, ours, low, high].map(|c| c.parse::<f64>().ok().filter(|n| n.is_finite()));
         let (printed, ours, low, high) = (printed?, ours?, low?, high?);
         let part = |of: f64| (of - printed).abs() / printed.abs();
         Some(Gate { width: part(low).max(part(high)), off: part(ours), holds: verdict == "holds" })
@@ -526,7 +541,8 @@ fn gates(page: &str) -> Option<String> {
         all.len(),
         all.len() - missed,
     );
-    let steps = [(0.01, "1 %"), (0.05, "5 %"), (0.25, "25 %"), (0.5, "50 %"), (1.0, "a factor of 2"), (f64::INFINITY, "more")];
+    let steps =
+        [(0.01, "1 %"), (0.05, "5 %"), (0.25, "25 %"), (0.5, "50 %"), (1.0, "a factor of 2"), (f64::INFINITY, "more")];
     let mut from = -1.0;
     // The ends of a gate are printed rounded.
     for (to, says) in steps.map(|(to, says)| (to * 1.001 + 1e-9, says)) {
@@ -538,7 +554,8 @@ fn gates(page: &str) -> Option<String> {
         let held: Vec<f64> = of.iter().filter(|g| g.holds).map(|g| g.off).collect();
         let largest = held.iter().copied().fold(0.0, f64::max);
         let [values, held_count] = [of.len(), held.len()];
-        writeln!(text, "| {says} | {values} | {held_count} | {} | {:.1} % |", values - held_count, 100.0 * largest).expect("to a text");
+        writeln!(text, "| {says} | {values} | {held_count} | {} | {:.1} % |", values - held_count, 100.0 * largest)
+            .expect("to a text");
     }
     Some(text)
 }
@@ -557,7 +574,8 @@ fn to_confirm(context: &Context) -> Result<String, String> {
     for law in open {
         let default = if law["default"] == true { "yes" } else { "" };
         let what = text(law, "trust").trim_start_matches("confirm: ");
-        writeln!(text_, "| {}={} | {default} | {} |", text(law, "family"), text(law, "law"), cell(what)).expect("to a text");
+        writeln!(text_, "| {}={} | {default} | {} |", text(law, "family"), text(law, "law"), cell(what))
+            .expect("to a text");
     }
     Ok(text_)
 }

@@ -122,7 +122,8 @@ fn assemble(context: &Context, pages: &Path) -> Result<usize, String> {
     copy_folder(&root.join("book/src"), pages, &|_| true)?;
     copy_folder(&root.join("validation"), &pages.join("validation"), &|_| true)?;
     copy_folder(&root.join("examples"), &pages.join("examples"), &|_| true)?;
-    let mut summary = read(&root.join("book/src/SUMMARY.md"))?.replace("# Summary\n", "# Summary\n\n[Willis](start.md)\n");
+    let mut summary =
+        read(&root.join("book/src/SUMMARY.md"))?.replace("# Summary\n", "# Summary\n\n[Willis](start.md)\n");
     let trains = gallery(context, pages, &mut summary)?;
     summary += "\n# Validation\n\n";
     for (title, file) in VALIDATION {
@@ -210,9 +211,10 @@ All pages work without a network. The field at the top searches them; the key `/
 /// Pages of all examples.
 fn gallery(context: &Context, pages: &Path, summary: &mut String) -> Result<usize, String> {
     *summary += "\n# Gallery\n\n- [All trains](gallery/index.md)\n";
-    let mut overview = "# Gallery\n\nEvery example with its pictures, file and report. *Studio* opens it in the browser.\n\n\
+    let mut overview =
+        "# Gallery\n\nEvery example with its pictures, file and report. *Studio* opens it in the browser.\n\n\
                         <div class=\"gallery\">\n"
-        .to_owned();
+            .to_owned();
     let files = example_files(context)?;
     for file in &files {
         let short = file.trim_start_matches("examples/").trim_end_matches(".toml");
@@ -256,10 +258,14 @@ fn gallery(context: &Context, pages: &Path, summary: &mut String) -> Result<usiz
         .expect("to a text");
         write(&pages.join("gallery").join(format!("{short}.md")), &page)?;
         writeln!(summary, "  - [{name}](gallery/{short}.md)").expect("to a text");
-        let first = ["stick.svg", "lever.svg", "flow.svg", "front.svg"].into_iter().find(|f| figures.iter().any(|g| g == f));
+        let first =
+            ["stick.svg", "lever.svg", "flow.svg", "front.svg"].into_iter().find(|f| figures.iter().any(|g| g == f));
         let picture = first.or(figures.first().map(String::as_str));
         let picture = picture.map_or(String::new(), |f| {
-            format!("<a href=\"{short}.html\"><img loading=\"lazy\" src=\"{short}/{f}\" alt=\"{} of this train\"></a>", words(f))
+            format!(
+                "<a href=\"{short}.html\"><img loading=\"lazy\" src=\"{short}/{f}\" alt=\"{} of this train\"></a>",
+                words(f)
+            )
         });
         writeln!(
             overview,
@@ -310,7 +316,8 @@ fn studio_link(text: &str, name: &str) -> Result<String, String> {
             )
         }
         (None, state) => {
-            let input = train.get("input").or_else(|| train.get("terminals")?.as_array()?.first()).and_then(Value::as_str);
+            let input =
+                train.get("input").or_else(|| train.get("terminals")?.as_array()?.first()).and_then(Value::as_str);
             let at = |value: &str| input.map_or("{}".into(), |i| format!("{{\"{i}\":\"{value}\"}}"));
             format!(
                 "{{\"state\":{},\"speeds\":{},\"torques\":{}}}",
@@ -499,7 +506,9 @@ fn index(pages: &Path) -> Result<String, String> {
     let summary = read(&pages.join("SUMMARY.md"))?;
     let mut all = Vec::new();
     for line in summary.lines() {
-        let Some((title, file)) = line.split_once("](").and_then(|(t, f)| Some((t.split('[').nth(1)?, f.strip_suffix(')')?))) else {
+        let Some((title, file)) =
+            line.split_once("](").and_then(|(t, f)| Some((t.split('[').nth(1)?, f.strip_suffix(')')?)))
+        else {
             continue;
         };
         let address = file.trim_end_matches(".md").to_owned() + ".html";
@@ -578,7 +587,8 @@ fn check(site: &Path, api: bool) -> Result<usize, String> {
             count += 1;
             let (address, fragment) = target.split_once('#').unwrap_or((&target, ""));
             let address = address.split('?').next().unwrap_or_default();
-            let to = if address.is_empty() { file.clone() } else { plain(&file.parent().expect("a folder").join(address)) };
+            let to =
+                if address.is_empty() { file.clone() } else { plain(&file.parent().expect("a folder").join(address)) };
             let to = if to.is_dir() { to.join("index.html") } else { to };
             let of_api = to.starts_with(site.join("api"));
             if !to.is_file() && (api || !of_api) {
@@ -682,10 +692,7 @@ mod tests {
     #[test]
     fn links_to_what_the_site_lacks_become_words() {
         let text = "see [one](nowhere/one.rs) and [two](https://example.org), [three](#three)";
-        assert_eq!(
-            without_lost_links(text, Path::new("/")),
-            "see one and [two](https://example.org), [three](#three)"
-        );
+        assert_eq!(without_lost_links(text, Path::new("/")), "see one and [two](https://example.org), [three](#three)");
     }
 
     #[test]

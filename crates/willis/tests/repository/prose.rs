@@ -70,9 +70,8 @@ const RETIRED: &[(&str, &str)] = &[
 fn has(line: &str, words: &str) -> bool {
     let line = line.to_lowercase();
     let part = |c: Option<char>| c.is_some_and(char::is_alphanumeric);
-    line.match_indices(words).any(|(at, _)| {
-        !part(line[..at].chars().next_back()) && !part(line[at + words.len()..].chars().next())
-    })
+    line.match_indices(words)
+        .any(|(at, _)| !part(line[..at].chars().next_back()) && !part(line[at + words.len()..].chars().next()))
 }
 
 #[test]
@@ -120,7 +119,8 @@ fn links(text: &str) -> Vec<(usize, String, String, bool)> {
         {
             let before = whole.split("](").nth(k - 1).unwrap();
             let open = before.rfind('[').map_or(0, |at| at + 1);
-            let label: String = before[open..].split('\u{1}').map(|p| p.split('\u{2}').next_back().unwrap_or(p)).collect();
+            let label: String =
+                before[open..].split('\u{1}').map(|p| p.split('\u{2}').next_back().unwrap_or(p)).collect();
             let figure = before[..open.saturating_sub(1)].ends_with('!');
             all.push((line, label.trim().to_owned(), target.to_owned(), figure));
         }
@@ -219,7 +219,10 @@ fn the_reference_has_every_key() {
     keys(&schema, &mut all);
     assert!(all.len() > 150, "only {} keys found", all.len());
     for key in all {
-        assert!(page.contains(&format!("| `{key}` |")), "the key `{key}` is not in the reference: run `cargo xtask reference`");
+        assert!(
+            page.contains(&format!("| `{key}` |")),
+            "the key `{key}` is not in the reference: run `cargo xtask reference`"
+        );
     }
 }
 
@@ -255,7 +258,10 @@ fn the_reference_has_every_question_and_figure() {
             let named = kinds.iter().filter_map(|k| k["properties"]["figure"]["const"].as_str());
             let draw = commands.split("\n## willis draw\n").nth(1).unwrap().split("\n## ").next().unwrap();
             for kind in named {
-                assert!(draw.lines().any(|l| l.split_whitespace().next() == Some(kind)), "the figure {kind} is not in the reference");
+                assert!(
+                    draw.lines().any(|l| l.split_whitespace().next() == Some(kind)),
+                    "the figure {kind} is not in the reference"
+                );
             }
         }
     }
