@@ -525,11 +525,11 @@ fn index(pages: &Path) -> Result<String, String> {
                 let anchor = if *again == 0 { anchor } else { format!("{anchor}-{again}") };
                 *again += 1;
                 section = Some((heading.replace('`', ""), format!("{address}#{anchor}"), String::new()));
-            } else if let Some((.., text)) = section.as_mut().filter(|s| s.2.len() < 1500) {
-                if !line.starts_with("```") && !line.starts_with("|---") && !line.starts_with("![") {
-                    *text += &without_marks(line.trim());
-                    text.push(' ');
-                }
+            } else if let Some((.., text)) = section.as_mut().filter(|s| s.2.len() < 1500)
+                && !["```", "|---", "!["].iter().any(|mark| line.starts_with(mark))
+            {
+                *text += &without_marks(line.trim());
+                text.push(' ');
             }
         }
         all.extend(section.take());
