@@ -155,7 +155,7 @@ impl<T> Options for T {}
 /// A question: the type is the request, its documentation the help.
 ///
 /// Implement it in a file of its own in `questions/` and add a line to the list there; command line, completions,
-/// schemas and the README's table follow.
+/// schemas and the reference pages of the book follow.
 pub trait Question:
     Options + Clone + fmt::Debug + Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static
 {

@@ -83,11 +83,13 @@ fn of(entry: &Entry) -> Command {
             .arg(
                 many("law")
                     .value_name("FAMILY=LAW")
-                    .help("Put a law into force: mesh_friction=niemann. Several times for several families"),
+                    .help("Use this loss law instead of the file's; repeatable: mesh_friction=niemann"),
             )
-            .arg(many("set").value_name("QUANTITY=VALUE").help(
-                "Give a quantity of the file another value: P1.sun.teeth=23. Several times for several quantities",
-            ))
+            .arg(
+                many("set")
+                    .value_name("QUANTITY=VALUE")
+                    .help("Use this value of a quantity instead of the file's; repeatable: P1.sun.teeth=23"),
+            )
             .arg(Arg::new("speed-tolerance").long("speed-tolerance").value_name("PART").value_parser(part).help(
                 "Measured speeds: they may contradict the gears by this part, 0.5% or 0.005; the answer tells by how \
                  much they do at worst",

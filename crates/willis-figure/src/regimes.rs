@@ -172,7 +172,7 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
         Ok(wrong) => wrong,
         Err(text) => {
             let mut all = Diagnostics::default();
-            let d = Diagnostic::new(Code::Unfit, "", format!("no wheel of regimes: {text}"));
+            let d = Diagnostic::new(Code::Unfit, "", format!("no regime map: {text}"));
             all.push(d.hint(
                 "it needs two degrees of freedom and one independent torque: name three `terminals`, or two \
                  that `balance` each other's power",

@@ -228,7 +228,7 @@ kinds! {
     "flow": Flow(FlowReport) = flow::KIND;
     /// A set seen along its axis, true teeth in mesh.
     "front": Front(Front) = front::KIND;
-    /// The wheel of regimes of two freedoms.
+    /// The regime map of a train with two degrees of freedom.
     "regimes": Regimes(RegimeMap) = regimes::KIND;
     /// Efficiency over two quantities; of an automatic the best gear.
     "map": Map(EfficiencyMap) = map::KIND;

@@ -4,11 +4,11 @@
 //! in order; `...` stands for lines left out. A train file without a folder is the last TOML block above it.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::context::{Context, passes, said};
 use crate::examples::example_files;
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// A command of the prose and what it is said to print.
@@ -32,29 +32,38 @@ pub(crate) fn book(context: &Context) -> Outcome {
 }
 
 /// `cargo xtask pages`: the book as web pages, by the tool that it is written for.
+pub(crate) fn pages(context: &Context) -> Outcome {
+    let program = match mdbook(context) {
+        Ok(program) => program,
+        Err(why) => return Outcome::Skipped(why),
+    };
+    let mut build = context.command(program);
+    build.args(["build", "book", "--dest-dir"]).arg(context.target.join("book-pages"));
+    let said = said(&build);
+    outcome(passes(&mut build, &said))
+}
+
+/// The tool that makes pages, or why it cannot be had.
 ///
 /// The tool is built once, without what serves and searches pages and without optimisation, and kept beside the other
 /// build results.
-pub(crate) fn pages(context: &Context) -> Outcome {
+pub(crate) fn mdbook(context: &Context) -> Result<PathBuf, String> {
     let tools = context.target.join("tools");
     let own = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
     let runs = |program: &Path| {
         context.output(context.command(program).arg("--version")).is_ok_and(|o| o.stdout.starts_with(b"mdbook v0.5"))
     };
-    let program = if runs(Path::new("mdbook")) { Path::new("mdbook") } else { &own };
-    if !runs(program) {
+    let program = if runs(Path::new("mdbook")) { PathBuf::from("mdbook") } else { own };
+    if !runs(&program) {
         let words = "cargo install --quiet --locked mdbook --version ^0.5 --no-default-features --debug";
         let mut install = context.words(words);
         install.arg("--root").arg(&tools).arg("--target-dir").arg(tools.join("build"));
-        if passes(&mut install, words).is_err() || !runs(program) {
-            return Outcome::Skipped("mdbook is not installed, and cannot be had here".into());
+        if passes(&mut install, words).is_err() || !runs(&program) {
+            return Err("mdbook is not installed, and cannot be had here".into());
         }
         let _ = fs::remove_dir_all(tools.join("build"));
     }
-    let mut build = context.command(program);
-    build.args(["build", "book", "--dest-dir"]).arg(context.target.join("book-pages"));
-    let said = said(&build);
-    outcome(passes(&mut build, &said))
+    Ok(program)
 }
 
 /// A new folder with the examples in it, where the reader of a page begins.

@@ -20,6 +20,10 @@ pub(crate) struct Options {
     pub(crate) modelica: Option<PathBuf>,
     /// Whether the program is built from nothing and timed.
     pub(crate) build: bool,
+    /// A studio that is built, for the site.
+    pub(crate) studio: Option<PathBuf>,
+    /// Whether the site does without the pages of the library.
+    pub(crate) no_api: bool,
 }
 
 /// Where things are, and what was said on the command line.

@@ -7,7 +7,7 @@ use std::thread;
 use serde_json::Value;
 
 use crate::context::{Context, said};
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::step::Outcome;
 
 /// Example trains, by path from the root, in order.

@@ -2,18 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::process::Command;
 
 use serde_json::Value;
 
 use crate::context::Context;
+use crate::program::build_willis;
+use crate::reference::{PAGES, PARTS, write_reference};
 use crate::step::{Outcome, outcome, tested};
 use crate::tested::{test, test_with};
 
 /// Files that are generated, and committed; so are the [`FIGURES`].
 const GENERATED: &[&str] = &[
     "schema/willis-1.schema.json",
-    "README.md",
     "validation/README.md",
     "validation/esmail-2018-table-1/README.md",
     "validation/losses/README.md",
@@ -167,6 +167,48 @@ const FIGURES: &[(&str, &[&str])] = &[
         &["draw", "tornado", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"],
     ),
     ("book/src/figures/nrel-band.svg", &["draw", "band", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/esmail-regimes.svg",
+        &["draw", "regimes", "examples/esmail-table-1.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/two-efficiencies-lever.svg",
+        &["draw", "lever", "examples/two-efficiencies.toml", "--theme", "auto", "-o"],
+    ),
+    ("book/src/figures/prius-lever.svg", &["draw", "lever", "examples/prius-p112.toml", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/c4-front.svg",
+        &["draw", "front", "examples/simpson-ford-c4.toml", "--nominal", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/wolfrom-front.svg",
+        &["draw", "front", "examples/wolfrom-498-self-locking.toml", "--nominal", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/wolfrom-stick.svg",
+        &["draw", "stick", "examples/wolfrom-498-self-locking.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/bevel-stick.svg",
+        &["draw", "stick", "examples/bevel-differential.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/ravigneaux-stick.svg",
+        &["draw", "stick", "examples/aisin-tl-80sn.toml", "--state", "3", "--theme", "auto", "-o"],
+    ),
+    ("book/src/figures/gen4-shift.svg", &["draw", "shift", "examples/zf-8hp-gen4.toml", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/fva-tornado.svg",
+        &["draw", "tornado", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/fva-band.svg",
+        &["draw", "band", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/fva-losses.svg",
+        &["draw", "losses", "examples/fva-planetary-stage.toml", "--operation", "rated", "--theme", "auto", "-o"],
+    ),
     ("book/src/figures/nrel-film.svg", &["draw", "film", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
 ];
 
@@ -193,27 +235,10 @@ fn write_schemas(context: &Context, questions: &[Value]) -> Result<(), String> {
     Ok(())
 }
 
-/// Writes the table of questions into the README, between its marks.
-fn write_questions(context: &Context, questions: &[Value]) -> Result<(), String> {
-    const MARKS: [&str; 2] = ["<!-- questions -->\n", "<!-- /questions -->"];
-    let mut table = "| question | what it answers |\n|---|---|\n".to_owned();
-    for question in questions {
-        let told = |field: &str| question[field].as_str().unwrap_or_default();
-        let first = told("about").split("\n\n").next().unwrap_or_default().replace('\n', " ");
-        table += &format!("| `{}` | {first} |\n", told("usage"));
-    }
-    let path = context.root.join("README.md");
-    let text = fs::read_to_string(&path).map_err(|e| format!("README.md: {e}"))?;
-    let (before, rest) = text.split_once(MARKS[0]).ok_or("README.md has no table of questions")?;
-    let (_, after) = rest.split_once(MARKS[1]).ok_or("README.md has no end of the table of questions")?;
-    fs::write(&path, format!("{before}{}{table}{}{after}", MARKS[0], MARKS[1])).map_err(|e| format!("README.md: {e}"))
-}
-
 /// Writes every generated file. Needs the optimised program.
 fn write_generated(context: &Context) -> Result<(), String> {
     let questions = questions(context)?;
     write_schemas(context, &questions)?;
-    write_questions(context, &questions)?;
     let schema = context.output(context.willis().arg("schema"))?.stdout;
     let file = context.root.join(GENERATED[0]);
     fs::create_dir_all(file.parent().expect("a folder")).map_err(|e| format!("the folder schema: {e}"))?;
@@ -228,7 +253,9 @@ fn write_generated(context: &Context) -> Result<(), String> {
         let from = context.root.join("examples").join(copy.rsplit('/').next().expect("a name"));
         fs::copy(&from, context.root.join(copy)).map_err(|e| format!("{}: {e}", from.display()))?;
     }
-    write_pages(context)
+    write_pages(context)?;
+    // Its counts are those of the pages.
+    write_reference(context)
 }
 
 /// Writes the pages of `validation`.
@@ -258,6 +285,9 @@ pub(crate) fn generate(context: &Context) -> Outcome {
 fn there(context: &Context) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut names: Vec<String> =
         GENERATED.iter().chain(FIGURES.iter().map(|f| &f.0)).map(|n| (*n).to_owned()).collect();
+    names.extend(PAGES.iter().map(|p| p.0).chain(PARTS.iter().map(|p| p.0)).map(str::to_owned));
+    names.sort();
+    names.dedup();
     // A folder that is not there has no file.
     for entry in fs::read_dir(context.root.join(ANSWERS)).into_iter().flatten() {
         let name = entry.map_err(|e| format!("{ANSWERS}: {e}"))?.file_name();
@@ -295,18 +325,4 @@ fn compare(context: &Context) -> Result<(), String> {
     }
     written?;
     if stale.is_empty() { Ok(()) } else { Err(format!("{}: run `cargo xtask generate`", stale.join("; "))) }
-}
-
-/// Builds the optimised program, and with it the Python package: alone each has other features of the same dependencies, so that
-/// everything above them would be compiled twice.
-pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli -p willis-py";
-
-/// What can be built before it is needed.
-pub(crate) fn builds(context: &Context) -> Vec<Command> {
-    vec![context.words(RELEASE)]
-}
-
-/// The optimised program, without a word where it is there.
-pub(crate) fn build_willis(context: &Context) -> Result<(), String> {
-    context.run(&format!("{RELEASE} --quiet"))
 }

@@ -13,7 +13,10 @@ mod licences;
 mod measure;
 mod package;
 mod pdf;
+mod program;
 mod python;
+mod reference;
+mod site;
 mod step;
 mod studio;
 mod tested;
@@ -46,7 +49,7 @@ const STEPS: &[Step] = &[
         .env(&[("RUSTDOCFLAGS", "-D warnings")])
         .in_check(),
     Step::new("package", "every published crate holds what it needs", Action::Call(package::package)),
-    Step::new("release", "the optimised program", Action::Run(generate::RELEASE)).ahead(generate::builds),
+    Step::new("release", "the optimised program", Action::Run(program::RELEASE)).ahead(program::builds),
     Step::new(
         "generated",
         "generated files are as `cargo xtask generate` writes them",
@@ -72,6 +75,7 @@ const STEPS: &[Step] = &[
 /// Tasks that are no steps of `ci`, but are shown like steps.
 const TASKS: &[Step] = &[
     Step::new("generate", "write the generated files", Action::Call(generate::generate)),
+    Step::new("reference", "of the generated files the reference pages of the book only", Action::Call(reference::reference)),
     Step::new(
         "validate",
         "write the validation pages, then compare every number of others with ours; [--modelica FOLDER] whole trajectories",
@@ -81,6 +85,12 @@ const TASKS: &[Step] = &[
         "fuzz",
         "no panic on random train files that grow by what they reach: 20 s, [--seconds N]; [--long] every text, 15 min a target",
         Action::Call(fuzz::fuzz),
+    )
+    .may_skip(),
+    Step::new(
+        "site",
+        "book, gallery, validation pages, studio and references as one folder of pages; [--studio FILE] one that is built; [--no-api]",
+        Action::Call(site::site),
     )
     .may_skip(),
     Step::new("bench", "benchmarks of the library", Action::Call(bench::bench)),
@@ -127,6 +137,14 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
             ("validate", "--modelica", [folder, more @ ..]) => {
                 // Tests run in the folder of their crate.
                 options.modelica = Some(std::path::absolute(folder).ok()?);
+                more
+            }
+            ("site", "--studio", [file, more @ ..]) => {
+                options.studio = Some(std::path::absolute(file).ok()?);
+                more
+            }
+            ("site", "--no-api", more) => {
+                options.no_api = true;
                 more
             }
             ("measure", "--build", more) => {

@@ -5,7 +5,7 @@ use std::process::Command;
 use std::{env, fs};
 
 use crate::context::{Context, component, passes, said};
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// Reports that are measured, and how many pages they may have.

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::context::{Context, passes, said};
-use crate::generate::build_willis;
+use crate::context::{Context, Options, passes, said};
+use crate::program::build_willis;
 use crate::step::Outcome;
 
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -66,6 +66,16 @@ fn all(context: &Context) -> Result<(), Stop> {
     match packed <= MOST_BYTES {
         true => Ok(()),
         false => Err(Stop::Fault(format!("{packed} bytes of packed WebAssembly are more than {MOST_BYTES}"))),
+    }
+}
+
+/// The page alone, built and not tested; why it cannot be had.
+pub(crate) fn studio_page(context: &Context) -> Result<PathBuf, String> {
+    let options = Options { no_tests: true, ..Options::default() };
+    let quiet = Context { root: context.root.clone(), target: context.target.clone(), options };
+    match all(&quiet) {
+        Ok(()) => Ok(context.target.join("studio.html")),
+        Err(Stop::Lack(why) | Stop::Fault(why)) => Err(why),
     }
 }
 

@@ -15,7 +15,7 @@ use crate::{Given, Of, Question, Refusal};
 ///
 /// Keys that differ come first, then states and operations by the size of their differences, then in a line what is
 /// equal. Operations of one name that prescribe different things are compared and marked. With --over the same axes are
-/// applied to every variant: where which is better, and by how much.
+/// applied to every variant: which is better where, and by how much.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]

@@ -14,13 +14,13 @@ use super::names;
 use crate::table::Table;
 use crate::{Attachment, Extra, File, Given, Holds, Question, Refusal};
 
-/// Tell what a duty cycle or a load spectrum costs: energies by source, state and direction, the worst rows.
+/// Compute the energy lost over a duty cycle or load spectrum: by source, state and direction, the worst rows.
 ///
 /// Each row of the profile, a CSV file, is one operating condition. A column weighs the rows in time: `time [s]` of a
 /// trace (each row holds until the next), or `duration [s]`, `hours` or `share` of a spectrum. The other columns set
 /// quantities, with the unit in the header: `input.speed [rpm]`, `output.torque [N m]`, `oil.temperature [degC]`, state, or any
-/// quantity of the train file. Rows without an answer are told with their reason, and the energies say which part of the
-/// time they cover.
+/// quantity of the train file. Rows without an answer are listed with their reason, and *coverage* is the part of the
+/// time that the energies hold for.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]

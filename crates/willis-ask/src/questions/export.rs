@@ -15,8 +15,8 @@ use crate::{File, Form, Given, Of, Question, Refusal};
 
 /// Write loss maps, efficiency tables, models and actuator blocks for other programs.
 ///
-/// Without a kind it lists the kinds. Numbers are those of `analyze`, at every point of the ranges; without ranges they
-/// are taken from the operations of the file, and told. What a format cannot say (a lock, several solutions, a dependence
+/// Without a kind it lists the kinds. Numbers are those of `analyze`, at every point of the ranges. Without ranges
+/// Willis takes them from the operating points of the file and prints them. What a format cannot say (a lock, several solutions, a dependence
 /// on load) stands in the comments of the file and among the notes; a point without an answer gets no number.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]

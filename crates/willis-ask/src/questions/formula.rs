@@ -128,7 +128,7 @@ pub struct OneFormula {
     pub title: String,
     /// The state of the shift table, or `as drawn`.
     pub state: String,
-    /// Regimes in which it holds (two or more freedoms).
+    /// Regimes in which it holds (two or more degrees of freedom).
     pub regimes: Vec<String>,
     /// Terminals where power enters.
     pub inputs: Vec<String>,

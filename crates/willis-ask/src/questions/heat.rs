@@ -16,7 +16,7 @@ use crate::{Attachment, Given, Holds, Question, Refusal};
 
 pub(super) use text::of_report;
 
-/// Tell how warm the gearbox gets: oil temperature, parts, warm-up, thermal rating, duty cycles.
+/// Compute how warm the gearbox gets: oil temperature, parts, warm-up, thermal rating, duty cycles.
 ///
 /// The oil temperature is the one at which the losses and what `[heat]` carries away agree, with the reason why there is no
 /// other, or all of them with their stability, or none below the limit. The thermal rating is the largest load at the

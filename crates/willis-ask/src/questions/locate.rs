@@ -11,7 +11,7 @@ use willis::work::Work;
 use super::amount::{of_members, pair};
 use crate::{Given, Question, Refusal};
 
-/// Tell in which regime an operating point lies, how far each boundary is and what changes there.
+/// Find the regime of an operating point, how far each boundary is and what changes there.
 ///
 /// Works for trains of any size: it looks at this one point.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

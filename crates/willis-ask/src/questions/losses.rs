@@ -16,7 +16,7 @@ use crate::{Given, Question, Refusal};
 
 pub(super) use text::of_solution;
 
-/// Tell where every watt goes, at a few speeds, loads and temperatures, or law beside law.
+/// List losses by source at a few speeds, loads and temperatures, or compare loss laws.
 ///
 /// Starts from the operations of the file. Loads stay as the file gives them (a torque stays that torque, a power that
 /// power) unless powers or torques vary them.

@@ -21,7 +21,7 @@ use crate::{File, Form, Given, Question, Refusal};
 /// List every regime of a train: who drives whom, in which speeds, with which formula.
 ///
 /// For two and more degrees of freedom: the regions of speed, the signs of the torques, inputs and outputs, the driving
-/// ends, the closed formula of efficiency and loss, the boundaries and what changes across them, and which assignments of
+/// gears, the closed formula of efficiency and loss, the boundaries and what changes across them, and which assignments of
 /// inputs and outputs cannot be reached. For one degree of freedom: driving and coasting of every state with its formula.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
@@ -61,7 +61,7 @@ impl Regimes {
         Ok(RegimeSelection { state, terminals, balance: pair(self.balance.as_deref())? })
     }
 
-    /// The wheel of regimes.
+    /// The regime map.
     #[cfg(feature = "pictures")]
     fn map(&self, of: &[Given]) -> Result<willis_figure::RegimeMap, Refusal> {
         Ok(willis_figure::regime_map(of[0].model.train(), &self.selection()?)?)
@@ -74,13 +74,13 @@ impl Question for Regimes {
     const FORMS: &'static [Form] = &[
         Form { name: "latex", endings: &["tex"], about: "a table for typesetting" },
         #[cfg(feature = "pictures")]
-        Form { name: "map-json", endings: &[], about: "the wheel of regimes as data (two freedoms)" },
+        Form { name: "map-json", endings: &[], about: "the regime map as data (two degrees of freedom)" },
     ];
     #[cfg(feature = "pictures")]
     const EXTRAS: &'static [Extra] = &[Extra {
         name: "map",
         value: "FILE.svg",
-        about: "Draw the wheel of regimes (two freedoms) into this SVG file",
+        about: "Draw the regime map (two degrees of freedom) into this SVG file",
     }];
     type Answer = RegimesAnswer;
 

@@ -11,11 +11,11 @@ use willis::work::{Effort, Work};
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
 
-/// Rank the inputs by what they do to efficiency and losses: which loss to attack first.
+/// Rank the inputs by their effect on efficiency and losses: what to change first.
 ///
-/// Exact derivatives (no differences are taken) of efficiency, of all losses and of each loss by every continuous
+/// Derivatives by automatic differentiation of efficiency, of all losses and of each loss by every continuous
 /// quantity of the file and of the operation, for a step of one percent (1 K, 1 degree, 0.01 of a profile shift); and how
-/// far the point is from another driving end and from locking.
+/// far the point is from a change of the driving gear and from locking.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]

@@ -26,7 +26,7 @@ pub use text::MOST_EVENTS;
 /// Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
 ///
 /// A run that jams, has several solutions or ends otherwise before the scenario is an answer, and the outcome
-/// says so. Ctrl-C ends the run where it is. In both cases what was computed is written and told.
+/// says so. Ctrl-C ends the run where it is. In both cases Willis writes and prints what was computed.
 ///
 /// Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes are 1 forward, -1
 /// backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line that begins with `# ` and says when and
@@ -35,7 +35,7 @@ pub use text::MOST_EVENTS;
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Simulate {
-    /// The scenario; needed where the file has several.
+    /// The scenario; required if the file has several.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SCENARIO"))]
     pub scenario: Option<String>,
     /// Only these columns in rows and figure, by kind (speed, torque, mode, ...) or by name.
@@ -53,7 +53,7 @@ pub struct Simulate {
     /// Relative tolerance of speeds and angles, from 1e-13 to 1e-2 [default: 1e-10].
     #[cfg_attr(feature = "clap", arg(long, value_name = "TOLERANCE", value_parser = tolerance))]
     pub tolerance: Option<f64>,
-    /// Advance in steps of this length, each of bounded cost: '1 ms'.
+    /// Use fixed time steps of this length (real time): '1 ms'.
     #[cfg_attr(
         feature = "clap",
         arg(long, value_name = "TIME", conflicts_with = "tolerance", allow_hyphen_values = true)
@@ -62,10 +62,10 @@ pub struct Simulate {
     /// Take the sign of each tooth force from the step before, as in Galvagno 2010, to show the error of that.
     #[cfg_attr(feature = "clap", arg(long, requires = "fixed_step"))]
     pub lagged_forces: bool,
-    /// Where several motions are possible, go on with one of them.
+    /// Where several motions are possible, continue with the first.
     #[cfg_attr(feature = "clap", arg(long))]
     pub continue_when_ambiguous: bool,
-    /// The most changes of mode within a thousandth of the scenario [default: 1000].
+    /// Stop after so many stick-slip changes within a thousandth of the scenario [default: 1000].
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", conflicts_with = "fixed_step", value_parser = clap::value_parser!(u64).range(1..)))]
     pub most_events: Option<u64>,
 }

@@ -14,15 +14,15 @@ use crate::{Given, Question, Refusal};
 
 /// Evaluate a train at many points: maps, trends, every gear at once.
 ///
-/// Any quantity of the train file or of the operating point can vary, along as many axes as wanted:
+/// Any quantity of the train file or of the operating point can vary, along any number of axes:
 ///
 ///   --over "input.speed=500 rpm..12000 rpm:100"   --over "output.torque=10..400 N m:80"
 ///
 ///   --over state=all   --over P1.planet.count=3,4,6   --over "oil.temperature=20..100 degC:9"
 ///
-/// A range may end with `:100` for so many values, both ends included, with `:31:log` for so many at a constant ratio, or
-/// with `:step 500 rpm` for one every so much. Torque and power of `input` and `output` are positive where they drive; of
-/// a member called by its name they are those ON it, as in the train file. Every point is that of `analyze`; a point that
+/// `500..12000 rpm:100` is 100 evenly spaced values, both ends included; `:31:log` is 31 values with a constant ratio; `:step
+/// 500 rpm` is a value every 500 rpm. Torque and power of `input` and `output` are positive driving and negative coasting; of a
+/// member called by its name they are those on it, as in the train file. Every point is that of `analyze`; a point that
 /// is locked or has several solutions is a row that says so.
 ///
 /// On the command line the rows are written into the file of --output, without which there is only a summary; an

@@ -13,7 +13,7 @@ use willis::work::Work;
 use crate::table::Table;
 use crate::{Extra, File, Given, Question, Refusal};
 
-/// Tell how sure a number is: its distribution when quantities are uncertain, and what dominates it.
+/// Compute the uncertainty of efficiency and losses: their distribution, and which input dominates it.
 ///
 /// Quantities are those of the train file and of the operation. Distributions: `0.98..0.99` (equally likely), `+-5%`
 /// about the file's value, `normal(0.4 um, 0.05 um)` and `lognormal(0.4 um, 1.3)` (both cut off at three standard

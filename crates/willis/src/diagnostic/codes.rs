@@ -53,12 +53,12 @@ codes! {
     /// A key stands where this format has none of that name. Keys are never ignored: a misspelt
     /// one would silently drop a datum. `willis schema` prints every key there is.
     E004 UnknownKey: "unknown key";
-    /// Something that cannot be assumed was not given.
+    /// This key has no default: add it.
     E005 MissingKey: "a required key is missing";
     /// The value is of another kind than the key takes, a text where a list belongs for example.
     E006 WrongType: "value of the wrong kind";
     /// A quantity is a text of a number and a unit, `"1450 rpm"`, `"350 N m"`, `"75 kW"`. A bare
-    /// number is refused because nobody can tell rad/s from rpm afterwards. NaN, infinities,
+    /// number is refused because a reader cannot know whether it is in rad/s or in rpm. NaN, infinities,
     /// unknown units and units of another kind of quantity are refused too.
     E007 Quantity: "not a quantity with a suitable unit";
     /// A number lies outside what is possible or sensible: tooth counts are integers from 1 to
@@ -78,7 +78,9 @@ codes! {
     /// The parts of a mesh or set do not make a pair of gears on a carrier: a gear meshes with
     /// itself, a gear is its own carrier, or both gears are internal.
     E104 ImpossibleMesh: "these parts cannot mesh";
-    /// A set misses a part that its type needs, or gives one that its type does not have.
+    /// Each type of set has its own parts. `simple`: `sun`, `ring`, `planet`. `double-planet`: `sun`, `ring`,
+    /// `inner_planet`, `outer_planet`. `stepped`: `suns`, `rings`, `planet`. `ravigneaux`: `small_sun`, `large_sun`,
+    /// `ring`, `short_planet`, `long_planet`. `bevel`: `sides`, `planet`. Planets may be left out.
     E105 IncompleteSet: "the parts of a set do not make that type of set";
     /// Sun and ring of a simple set lie on one axis, so unshifted gears need
     /// `z_ring = z_sun + 2 z_planet`. Profile shift closes a difference of one or two teeth (a
@@ -89,7 +91,7 @@ codes! {
     /// A train beyond 128 meshes, 1024 members or shift elements, 256 states, 4096 operations or 256 scenarios is refused,
     /// so that time and memory stay bounded.
     E108 TooLarge: "the train is too large";
-    /// Two keys say the same thing in two ways, or exclude each other.
+    /// Give only one of these keys: both set the same quantity, or one excludes the other.
     E109 Conflict: "these keys exclude each other";
     /// The teeth described cannot exist: the tip lies inside the base circle, the tooth is pointed,
     /// the centre distance leaves no contact, the planets of one set would need axes on different
@@ -127,12 +129,12 @@ codes! {
     E204 NotATerminal: "a torque acts on a member that is no terminal";
     /// A member is held and at the same time driven, loaded, or asked for twice.
     E205 HeldAndDriven: "a member is held and driven at once";
-    /// A power is given on a member that stands still, where no torque can make it.
+    /// At zero speed the power of any torque is zero. Prescribe a torque instead, or let the member turn.
     E206 PowerAtRest: "a power is given on a member at rest";
     /// The state or operation asked for is not in the file.
     E207 UnknownSelection: "there is no such state or operation";
     /// The question is for another kind of train: a table over all basic ratios needs one set with
-    /// three terminals, a wheel of regimes two degrees of freedom and one independent torque, an
+    /// three terminals, a regime map two degrees of freedom and one independent torque, an
     /// operating point as many speeds and torques as are independent.
     E208 Unfit: "the question does not fit this train";
     /// In a simulation torques become accelerations by inertia. Some members can move together, along the
@@ -171,11 +173,12 @@ codes! {
     /// No member of a set can move: the shift elements or held members leave no motion.
     W307 KinematicallyLocked: "the train cannot turn";
     /// More gear pairs (or clutches) than independent constraints: the train is statically
-    /// indeterminate. Real tooth and shaft stiffness decides how the load divides; statics
-    /// cannot, and does not pretend to.
+    /// indeterminate. Stiffness decides the load sharing, and the model is rigid: remove a redundant mesh or
+    /// clutch.
     W308 Indeterminate: "statically indeterminate";
     /// Friction holds the train: with the mesh losses given no equilibrium exists in which a load
-    /// is driven. Naive formulas return an efficiency below 0 or above 1 here.
+    /// is driven. Check the signs of torques and speeds. Formulas that assume the power direction can return an
+    /// efficiency below 0 or above 1 here.
     W309 SelfLocking: "the train locks by friction";
     /// With the same speeds and the same prescribed torques several equilibria exist, with
     /// different efficiencies. A rigid quasi-static model cannot choose between them (it is the
@@ -201,7 +204,7 @@ codes! {
     /// extrapolation; `willis losses --compare FAMILY` shows what other laws of the family say.
     W316 OutsideLaw: "outside the range of a law";
     /// Losses and loads depend on each other and were not brought into agreement to 1e-9 of the
-    /// loss. What is shown is the last step; treat it as a hint only.
+    /// loss. The numbers are those of the last step: do not use them.
     W317 NotConverged: "the operating point did not converge";
     /// The speeds that were prescribed contradict the gears, within the tolerance that was asked for:
     /// measured speeds do. The answer is that of speeds which the gears allow: those given first hold, the others

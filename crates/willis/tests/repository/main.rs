@@ -4,3 +4,4 @@ mod architecture;
 mod contracts;
 mod docs;
 mod how_to_add;
+mod prose;

@@ -112,7 +112,9 @@ fn shift_table(a: &Analysis) -> String {
     out += &show(&t);
     out += &loads(a);
     if rows.iter().any(|(_, s)| proved(&s.drive) || proved(&s.coast)) {
-        out += &dim("proved: exactly one equilibrium exists whatever the load (certificate)");
+        out += &dim(
+            "proved: exactly one equilibrium for any load, in these directions of rotation and with these efficiencies (certificate)",
+        );
         out.push('\n');
     }
     for (name, s) in rows {
