@@ -19,6 +19,8 @@ export interface Row {
   planet_spin: number;
   member_speed: number;
   element_torque: number | null;
+  /** Efficiencies under the laws of friction of the file, in its operations. */
+  laws?: { forward: number | null; backward: number | null; self_locking: boolean };
 }
 
 export interface Found {
@@ -28,7 +30,7 @@ export interface Found {
   space: { candidates: number };
   waterfall: { condition: string; trains: number; designs: number }[];
   objectives: string[];
-  ranked_by: string;
+  ranked_by: { by: "mesh_efficiencies" | "laws"; forward: string[]; backward: string[]; words: string };
   front: number;
   rows: Row[];
   own?: { name: string; fails: string[]; better: number; row: Row };

@@ -71,6 +71,10 @@ pub struct Design {
     /// Rows of all trains that satisfy the wish, not only of those that no other one beats.
     #[cfg_attr(feature = "clap", arg(long))]
     pub all: bool,
+    /// Compute so many trains at most with the laws of friction of the file, in its operations, so that these laws rank them:
+    /// all trains where there are no more, else those that no other one beats. With 0 mesh efficiencies rank. Default: 500.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TRAINS"))]
+    pub recompute: Option<u64>,
     /// Give these rows as train files, by their numbers: 3, or 1,2,5 into a folder.
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "ROWS"))]
     pub write: Vec<u64>,
@@ -162,7 +166,8 @@ impl Design {
 
     fn request(&self) -> Result<teeth::Request, Refusal> {
         let mut wrong = Diagnostics::default();
-        let mut request = teeth::Request { top: self.top, all: self.all, ..teeth::Request::default() };
+        let mut request =
+            teeth::Request { top: self.top, all: self.all, recompute: self.recompute, ..teeth::Request::default() };
         if let Some(sort) = &self.sort {
             match sort.parse::<Objective>() {
                 Ok(sort) => request.sort = Some(sort),

@@ -4,12 +4,12 @@ use toml_edit::{DocumentMut, Item};
 use willis::Model;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 
-use super::answer::OwnTrain;
+use super::answer::{OwnTrain, Ranking, Recomputed};
 use super::document::{Design, DesignedSet, at, paths, planet_tables, set_kind, tables};
 use super::front::covers;
+use super::laws::Lawful;
 use super::layout::SetKind;
 use super::range::Counts;
-use super::report::operations;
 use super::search::{Needs, Teeth};
 use super::space::SetSpace;
 
@@ -28,7 +28,13 @@ impl Design {
     ///
     /// # Errors
     /// The file cannot be read as a train, or has no sets like those that are designed.
-    pub(crate) fn own(&self, name: &str, text: &str, front: &[Teeth]) -> Result<OwnTrain, Diagnostics> {
+    pub(crate) fn own(
+        &self,
+        name: &str,
+        text: &str,
+        front: &[Vec<f64>],
+        ranking: &Ranking,
+    ) -> Result<OwnTrain, Diagnostics> {
         let model = Model::from_toml(text)?;
         let document: DocumentMut = text.parse().map_err(|_| Diagnostic::new(Code::Syntax, "", "is not valid TOML"))?;
         let all: Vec<Own> = (self.sets.iter().enumerate())
@@ -50,7 +56,10 @@ impl Design {
             return Err(Diagnostic::new(Code::Unfit, "", message).into());
         };
         let mut row = here.row(0, &teeth, &judged);
-        row.operations = operations(model.train(), &self.operation_names());
+        let laws = Lawful::of(model.train(), &self.operation_names(), &self.target_states());
+        let value;
+        (value, row.laws) = self.with_own_laws(&judged, &laws, ranking);
+        row.operations = laws.operations;
         for (k, (state, target)) in self.targets.iter().enumerate() {
             let inside = target.ratio.is_any()
                 || match row.states.get(&target.state).and_then(|s| s.ratio.as_ref()) {
@@ -66,13 +75,11 @@ impl Design {
         let ring = self.limits.ring_diameter.is_some_and(|limit| here.ring(&teeth) > limit * (1.0 + 1e-12));
         fails.extend(ring.then(|| "ring_diameter".to_owned()));
         let later = self.conditions_of_motion();
-        fails.extend(later.into_iter().zip(self.meets(&judged)).filter(|(_, met)| !met).map(|(name, _)| name));
-        let point = self.point(&judged, &teeth);
-        let better = |t: &&Teeth| {
-            let Some(judged) = self.judge(t, self.needs()) else { return false };
-            let other = self.point(&judged, t);
-            covers(&other, &point) && other != point
-        };
+        // Where laws rank all trains, they decide about demands.
+        let decides = if ranking.recomputed == Recomputed::All { &value } else { &judged };
+        fails.extend(later.into_iter().zip(self.meets(decides)).filter(|(_, met)| !met).map(|(name, _)| name));
+        let point = self.point(&value, &teeth);
+        let better = |other: &&Vec<f64>| covers(other, &point) && **other != point;
         let better = front.iter().filter(better).count() as u64;
         Ok(OwnTrain { name: name.to_owned(), fails, better, row })
     }

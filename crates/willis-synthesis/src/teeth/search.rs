@@ -252,27 +252,24 @@ impl Design {
         whole
     }
 
-    /// The best of all trains that satisfy the wish, whether others beat them or not: so many, by one objective, ties by the
-    /// fewest teeth. None where the work was cancelled before all of them were seen.
-    pub(crate) fn best(&self, sort: Objective, most: usize, work: &dyn Work) -> Option<Vec<Teeth>> {
-        struct Kept<'d> {
+    /// Calls `found` with every train that satisfies the wish. False where the work was cancelled before all of them were
+    /// seen.
+    pub(crate) fn for_each_that_meets(
+        &self,
+        needs: Needs,
+        work: &dyn Work,
+        found: &mut dyn FnMut(Teeth, Judged),
+    ) -> bool {
+        struct Meeting<'d> {
             design: &'d Design,
             needs: Needs,
-            sort: Objective,
-            most: usize,
-            // The worst is the last.
-            rows: BTreeSet<(Order, Teeth)>,
+            found: &'d mut dyn FnMut(Teeth, Judged),
         }
-        impl Kept<'_> {
+        impl Meeting<'_> {
             fn take(&mut self, teeth: Teeth) {
                 let Some(judged) = self.design.judge(&teeth, self.needs) else { return };
-                if !self.design.meets(&judged).all(|m| m) {
-                    return;
-                }
-                let value = self.design.value(self.sort, &judged, &teeth);
-                self.rows.insert((Order(if self.sort.is_better_high() { -value } else { value }), teeth));
-                if self.rows.len() > self.most {
-                    self.rows.pop_last();
+                if self.design.meets(&judged).all(|m| m) {
+                    (self.found)(teeth, judged);
                 }
             }
             fn choose(&mut self, lists: &[Vec<&Item>], teeth: &mut Teeth) {
@@ -284,7 +281,7 @@ impl Design {
                 }
             }
         }
-        impl Receive for Kept<'_> {
+        impl Receive for Meeting<'_> {
             fn single(&mut self, item: &Item) {
                 if item.is_admissible() {
                     self.take(vec![item.teeth.clone()]);
@@ -296,9 +293,7 @@ impl Design {
                 self.choose(&lists, &mut vec![]);
             }
         }
-        let asked = Self { objectives: vec![sort], ..self.clone() };
-        let needs = asked.needs();
-        let mut kept = Kept { design: self, needs, sort, most, rows: BTreeSet::new() };
+        let mut meeting = Meeting { design: self, needs, found };
         let mut whole = true;
         self.walk(false, &mut |outer, walk| {
             work.begin("steps", outer as u64);
@@ -307,11 +302,27 @@ impl Design {
                     whole = false;
                     return;
                 }
-                walk(step..step + 1, &mut kept);
+                walk(step..step + 1, &mut meeting);
                 work.advance(1);
             }
         });
-        whole.then(|| kept.rows.into_iter().map(|(_, teeth)| teeth).collect())
+        whole
+    }
+
+    /// The best of all trains that satisfy the wish, whether others beat them or not: so many, by one objective, ties by the
+    /// fewest teeth. None where the work was cancelled before all of them were seen.
+    pub(crate) fn best(&self, sort: Objective, most: usize, work: &dyn Work) -> Option<Vec<Teeth>> {
+        let needs = Self { objectives: vec![sort], ..self.clone() }.needs();
+        // The worst is the last.
+        let mut rows: BTreeSet<(Order, Teeth)> = BTreeSet::new();
+        let whole = self.for_each_that_meets(needs, work, &mut |teeth, judged| {
+            let value = self.value(sort, &judged, &teeth);
+            rows.insert((Order(if sort.is_better_high() { -value } else { value }), teeth));
+            if rows.len() > most {
+                rows.pop_last();
+            }
+        });
+        whole.then(|| rows.into_iter().map(|(_, teeth)| teeth).collect())
     }
 
     /// The spaces of the sets, in order; sets with the same space share it.
