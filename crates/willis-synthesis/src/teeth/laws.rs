@@ -209,6 +209,32 @@ impl Design {
         (if ranking.by == RankedBy::Laws { value } else { judged.clone() }, Some(row))
     }
 
+    /// What the laws make of one train, and its operations.
+    pub(crate) fn row_with_laws(&self, teeth: &Teeth, judged: &Judged) -> (Option<LawRow>, Named<OperationRow>) {
+        let laws = self.lawful(teeth, &self.operation_names());
+        let ranks = [laws.forward.is_some(), laws.backward.is_some()];
+        let value = laws.value(judged, ranks).unwrap_or_else(|| judged.clone());
+        let row = (ranks != [false; 2]).then(|| laws.row(self.demands_missed(&value)));
+        (row, laws.operations)
+    }
+
+    /// What ranks where nothing was ranked.
+    pub(crate) fn unranked(&self) -> Ranking {
+        let mut ranking = Ranking {
+            by: RankedBy::MeshEfficiencies,
+            forward: vec![],
+            backward: vec![],
+            recomputed: Recomputed::None,
+            trains: 0,
+            satisfy: None,
+            open: 0,
+            front_before: 0,
+            words: String::new(),
+        };
+        ranking.words = self.words(&ranking);
+        ranking
+    }
+
     fn demands_missed(&self, value: &Judged) -> Vec<String> {
         let demands =
             [("forward", self.require.forward, value.forward), ("backward", self.require.backward, value.backward)];

@@ -164,6 +164,28 @@ impl Design {
         })
     }
 
+    /// The answer of tooth numbers that were given.
+    pub(crate) fn unsearched(&self, row: DesignRow) -> DesignAnswer {
+        let statement = "These tooth numbers were given; nothing was searched.".to_owned();
+        DesignAnswer {
+            format: Format::new(),
+            name: self.name.clone(),
+            wish: self.wish(),
+            space: self.space(),
+            completeness: Completeness { complete: false, done: 0, of: 0, statement },
+            waterfall: vec![],
+            objectives: self.objectives.clone(),
+            ranked_by: self.unranked(),
+            front: 0,
+            sorted_by: self.objectives.first().copied().unwrap_or(Objective::Error),
+            of_all: true,
+            rows: vec![row],
+            own: None,
+            relaxations: vec![],
+            diagnostics: vec![],
+        }
+    }
+
     /// Ratios that no basic ratios of these ranges reach together: single ones, else pairs, else all.
     fn contradictions(&self) -> Option<Diagnostic> {
         let mut bounds = vec![[1.0, 1.0]; self.layout.variables];

@@ -456,8 +456,11 @@ impl Design {
         let mut product = 1.0;
         for s in &self.sets {
             let [sun, planet, _] = seeds(s.space.kind);
-            let own =
+            let mut own =
                 size(&s.space.gears[sun]) * self.planets_between(&s.space, planet) * s.space.mismatch.len() as f64;
+            if matches!(s.space.kind, SetKind::Stepped | SetKind::Rings) {
+                own *= self.planets_between(&s.space, 2);
+            }
             if own > 3e7 {
                 let message =
                     format!("set `{}` has {own:.0} choices of its first gears; 30 million are the most", s.name);
@@ -730,6 +733,7 @@ impl Design {
             let own = match self.sets[p].space.kind {
                 SetKind::Simple => vec![z[2] / z[0]],
                 SetKind::Wolfrom => vec![z[2] / z[0], z[1] * z[4] / (z[0] * z[3])],
+                SetKind::Stepped | SetKind::Rings => vec![z[3] * z[1] / (z[0] * z[2])],
                 SetKind::Ravigneaux => vec![z[3] / z[1], z[3] / z[0]],
             };
             y[self.layout.first[k]..][..own.len()].copy_from_slice(&own);
@@ -779,7 +783,7 @@ impl Design {
 /// The gears that the first variable of a set is made of.
 fn seeds(kind: SetKind) -> [usize; 3] {
     match kind {
-        SetKind::Simple | SetKind::Wolfrom => [0, 1, 2],
+        SetKind::Simple | SetKind::Wolfrom | SetKind::Stepped | SetKind::Rings => [0, 1, 2],
         SetKind::Ravigneaux => [1, 2, 3],
     }
 }
@@ -926,9 +930,56 @@ mod tests {
         };
     }
 
+    /// A sun on one step of the planets, a held ring on the other.
+    const STEPPED: &str = r#"
+format = 1
+name = "stepped"
+members = ["sun", "carrier"]
+terminals = ["sun", "carrier"]
+[[set]]
+name = "P1"
+type = "stepped"
+suns = [{ member = "sun", teeth = 20, planet_teeth = 40 }]
+rings = [{ member = "frame", teeth = 80, planet_teeth = 20 }]
+carrier = "carrier"
+mesh_efficiency = { external = 0.98, internal = 0.99 }
+"#;
+
+    /// Two rings on two steps, driven by the carrier.
+    const RINGS: &str = r#"
+format = 1
+name = "two rings, stepped"
+members = ["carrier", "ring"]
+terminals = ["carrier", "ring"]
+[[set]]
+name = "P1"
+type = "stepped"
+rings = [{ member = "frame", teeth = 80, planet_teeth = 30 }, { member = "ring", teeth = 76, planet_teeth = 26 }]
+carrier = "carrier"
+mesh_efficiency = { external = 0.98, internal = 0.99 }
+"#;
+
     /// Trains of the repository: the text, and for each designed set its gears as ranges.
     fn cases() -> Vec<(&'static str, Vec<(&'static str, &'static str)>)> {
         vec![
+            (
+                STEPPED,
+                vec![
+                    ("P1.suns.0.teeth", "18..22"),
+                    ("P1.suns.0.planet_teeth", "38..42"),
+                    ("P1.rings.0.planet_teeth", "18..22"),
+                    ("P1.rings.0.teeth", "70..90"),
+                ],
+            ),
+            (
+                RINGS,
+                vec![
+                    ("P1.rings.0.teeth", "76..84"),
+                    ("P1.rings.0.planet_teeth", "28..32"),
+                    ("P1.rings.1.planet_teeth", "24..30"),
+                    ("P1.rings.1.teeth", "60..90"),
+                ],
+            ),
             (
                 example!("zf-8hp70.toml"),
                 vec![
@@ -1223,7 +1274,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_search_make_the_whole() {
-        let (text, ranges) = &cases()[2];
+        let (text, ranges) = &cases()[4];
         let design = design(text, ranges, r#"["assembly"]"#);
         let serial = &willis::work::Serial;
         let whole = design.search(Progress::default(), None, serial).unwrap();
@@ -1245,7 +1296,7 @@ mod tests {
                 true
             }
         }
-        let (text, ranges) = &cases()[2];
+        let (text, ranges) = &cases()[4];
         let answer = design(text, ranges, "[]").answer(&super::super::report::Request::default(), &Stops).unwrap();
         assert!(!answer.completeness.complete && answer.completeness.done == 0);
         assert!(answer.completeness.statement.contains("0.0 % of the space is done"));

@@ -76,10 +76,13 @@ fn every_train_is_a_row_of_the_design_around_it() {
 /// Every row that is written is read by everything else, with the ratio and the efficiencies of the row.
 #[test]
 fn rows_are_trains_with_what_the_row_says() {
-    for kind in [StartKind::Simple, StartKind::TwoStage, StartKind::Wolfrom] {
+    for (_, kind) in StartKind::ALL {
         let ratio = match kind {
             StartKind::Simple => "4.2",
             StartKind::TwoStage => "20..20.5",
+            StartKind::Stepped => "9..9.2",
+            StartKind::TwoRings => "60..62",
+            StartKind::Ravigneaux => "1.5..1.52",
             _ => "95..105",
         };
         let start = Start { ratio: Some(ratio.into()), ring: Some("80 mm".into()), ..Start::new(kind) };
