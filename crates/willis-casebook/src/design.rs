@@ -110,7 +110,8 @@ fn wolfrom(gears: &str, ring: i64, [external, internal]: [f64; 2], wish: &str) -
 
 fn simple_sets(c: &mut Counts<'_>) {
     type Row = (i64, [u64; 4]);
-    let cases: [(&str, &str, i64, &str, u64, &[Row]); 2] = [
+    type Space = (&'static str, &'static str, i64, &'static str, u64, &'static [Row]);
+    let cases: [Space; 2] = [
         (
             "one set, ratio 3.9 to 4.1, teeth 12 to 120, ring to 300",
             "ratio = [3.9, 4.1]",
