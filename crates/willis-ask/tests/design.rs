@@ -62,6 +62,51 @@ fn rows_are_written_as_trains() {
     assert_eq!(answer(again).json(), start.json());
 }
 
+/// By its teeth a row is the same train file, and nothing is searched for it.
+#[test]
+fn teeth_are_written_without_a_search() {
+    let searched = answer(json!({ "file": joint(), "write": [2] })).write("train").unwrap().remove(0).bytes;
+    let given = answer(json!({ "file": joint(), "teeth": ["12/41/93/35/87"] }));
+    assert_eq!(given.write("train").unwrap().remove(0).bytes, searched);
+    assert!(given.text().contains("nothing was searched") && !given.is_partial());
+    let request = design().request(json!({ "file": joint(), "teeth": ["12/41/93/35/87"] })).unwrap();
+    let pieces: Vec<Vec<u8>> = (0..2).map(|k| request.piece(&[], k, 2, &Serial).unwrap()).collect();
+    assert_eq!(request.gather(std::sync::Arc::new([]), &pieces).unwrap().json(), given.json());
+    for (teeth, says) in [
+        (json!(["12/41/93/35"]), "is not the teeth of set `P1`"),
+        (json!(["12/41/93/35/x"]), "is not the teeth of set `P1`"),
+        (json!(["12/41/93/35/0"]), "is not the teeth of set `P1`"),
+        (json!(["12/41/93/35/87", "1/2/3"]), "teeth of 2 sets are given, but 1 set is designed"),
+        (json!(["12/41/93/35/99"]), "are not in the space"),
+        (json!(["11/41/92/35/86"]), "are not in the space"),
+    ] {
+        let text = refused(json!({ "file": joint(), "teeth": teeth })).render(&[], false);
+        assert!(text.contains(says), "{teeth}: {text}");
+    }
+    let both = design().request(json!({ "file": joint(), "teeth": ["12/41/93/35/87"], "write": [1] }));
+    assert!(both.is_err() || both.unwrap().ask(&[], &Serial).is_err());
+}
+
+/// Laws of friction rank where the file has them, and the words say which losses did.
+#[test]
+fn what_ranked_is_said() {
+    // Lines are broken where they end.
+    let flat = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = flat(answer(json!({ "file": joint() })).text());
+    assert!(text.contains("Efficiencies that rank: the mesh efficiencies of the file"), "{text}");
+    let lawful = joint()["text"].as_str().unwrap().replace(
+        "mesh_efficiency = { external = 0.98, internal = 0.99 }",
+        "geometry = { module = \"0.8 mm\", width = \"8 mm\", roughness = \"0.8 um\" }\n\
+         [[operation]]\nname = \"lift\"\nspeeds = { sun = \"3000 rpm\" }\ntorques = { sun = \"0.1 N m\" }\n",
+    );
+    let lawful = json!({ "name": "lawful.toml", "text": lawful });
+    let answered = answer(json!({ "file": lawful }));
+    let (text, report) = (flat(answered.text()), serde_json::from_str::<Value>(&answered.json()).unwrap());
+    assert_eq!((&report["ranked_by"]["by"], &report["ranked_by"]["recomputed"]), (&json!("laws"), &json!("all")));
+    assert!(text.contains("under the laws of friction") && text.contains("by laws"), "{text}");
+    assert!(report["rows"][0]["laws"]["forward"].as_f64().unwrap() < 1.0);
+}
+
 #[test]
 fn what_was_stopped_says_how_far_it_came() {
     struct Stops;

@@ -9,6 +9,7 @@
 //! assert!(report.gates.iter().all(|g| g.holds || g.cause.is_some()));
 //! ```
 
+mod design;
 mod galvagno;
 mod losses;
 mod wang_2020;
@@ -53,6 +54,12 @@ pub const CASES: &[Case] = &[
         name: "galvagno",
         about: "motion of a lossy planetary set, Galvagno 2010: fourteen power flows, transients, offsets, jamming",
         run: galvagno::report,
+        data: None,
+    },
+    Case {
+        name: "design",
+        about: "designs: counts of whole spaces, production tooth numbers, published optima, what published counts leave open",
+        run: design::report,
         data: None,
     },
 ];

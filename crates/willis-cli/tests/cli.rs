@@ -599,8 +599,8 @@ fn regress_validate_json() {
     let listed = json(&[]);
     assert_eq!(listed["format"], "willis-cases-1");
     let names: Vec<_> = listed["cases"].as_array().unwrap().iter().map(|c| c["name"].clone()).collect();
-    assert_eq!(names, ["wang-2020", "losses", "galvagno"]);
-    for case in ["wang-2020", "losses", "galvagno"] {
+    assert_eq!(names, ["wang-2020", "losses", "galvagno", "design"]);
+    for case in ["wang-2020", "losses", "galvagno", "design"] {
         let report = json(&[case]);
         assert_eq!(report["format"], "willis-validation-1");
         has(&report["sections"][0], &["title", "text", "columns", "rows", "points"]);
@@ -619,7 +619,7 @@ fn regress_validate_data() {
 #[test]
 fn regress_validate_unknown() {
     let said = refused(&command(&["validate", "wang-2021"]).output().expect("the binary runs"), 1);
-    assert!(said.contains("wang-2020, losses, galvagno"), "{said}");
+    assert!(said.contains("wang-2020, losses, galvagno, design"), "{said}");
     let said = refused(&command(&["validate", "losses", "--data", "."]).output().expect("the binary runs"), 1);
     assert!(said.contains("has no curves"), "{said}");
 }

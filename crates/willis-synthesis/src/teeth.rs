@@ -12,6 +12,7 @@
 //! | all teeth with the ratios | `nest`; one Wolfrom drive: `lines`; single gear pairs: `pairs` |
 //! | efficiencies and speeds | `statics` |
 //! | counts, front, parts of a search | `search`, `front` |
+//! | which trains are the best under the laws of friction | `laws` |
 //! | the answer; what must give; what contradicts itself | `report`, `answer`; `relax`; `contradiction` |
 
 mod answer;
@@ -20,6 +21,7 @@ mod document;
 pub mod fit;
 mod form;
 mod front;
+mod laws;
 mod layout;
 mod lines;
 mod nest;
@@ -37,7 +39,8 @@ mod statics;
 mod wish;
 
 pub use answer::{
-    Completeness, DesignAnswer, DesignRow, OperationRow, OwnTrain, Relaxation, SetRange, SetRow, Space, Stage, StateRow,
+    Completeness, DesignAnswer, DesignRow, LawRow, OperationRow, OwnTrain, RankedBy, Ranking, Recomputed, Relaxation,
+    SetRange, SetRow, Space, Stage, StateRow,
 };
 pub use document::Design;
 pub use front::Front;

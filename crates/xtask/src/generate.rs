@@ -17,6 +17,7 @@ const GENERATED: &[&str] = &[
     "validation/README.md",
     "validation/esmail-2018-table-1/README.md",
     "validation/losses/README.md",
+    "validation/design/README.md",
     "validation/galvagno/README.md",
     "validation/modelica/README.md",
     "validation/wang-2020/report.md",

@@ -19,6 +19,8 @@ export interface Row {
   planet_spin: number;
   member_speed: number;
   element_torque: number | null;
+  /** Efficiencies under the laws of friction of the file, in its operations. */
+  laws?: { forward: number | null; backward: number | null; self_locking: boolean };
 }
 
 export interface Found {
@@ -28,7 +30,7 @@ export interface Found {
   space: { candidates: number };
   waterfall: { condition: string; trains: number; designs: number }[];
   objectives: string[];
-  ranked_by: string;
+  ranked_by: { by: "mesh_efficiencies" | "laws"; forward: string[]; backward: string[]; words: string };
   front: number;
   rows: Row[];
   own?: { name: string; fails: string[]; better: number; row: Row };
@@ -43,6 +45,9 @@ export const KINDS: Record<string, { title: string; least: number; most: number 
   simple: { title: "simple set", least: 2.5, most: 12 },
   "two-stage": { title: "two stages", least: 8, most: 120 },
   "3k": { title: "3K drive", least: 10, most: 500 },
+  stepped: { title: "stepped planets", least: 4, most: 25 },
+  "two-rings": { title: "two rings", least: 10, most: 500 },
+  ravigneaux: { title: "Ravigneaux set", least: 1.2, most: 4 },
 };
 
 /** A wish that may be left out. */
@@ -85,7 +90,7 @@ class Design {
   of = $state.raw("");
   /** The row that is shown as the train of the page. */
   shown = $state<number | null>(null);
-  /** The row whose train is being made: the search comes to it once more. */
+  /** The row whose train is being made. */
   opening = $state<number | null>(null);
 
   #wanted: { key: string; request: Request } | null = null;
@@ -162,7 +167,7 @@ class Design {
     const request = this.request();
     if (!request) return null;
     try {
-      const asked = { doc: this.#doc, point: NOTHING, question: "design", request: { ...request, top: MOST_ROWS, ...more }, form };
+      const asked = { doc: this.#doc, point: NOTHING, question: "design", request: { ...request, ...more }, form };
       return (JSON.parse(await ask("design row", asked)) as { text: string }[])[0]?.text ?? null;
     } catch (why) {
       if (why instanceof Refused) this.refusal = why.refusal;
@@ -173,7 +178,8 @@ class Design {
   /** Opens a row as the train of the page; all panels show it. */
   async open(row: Row): Promise<void> {
     this.opening = row.number;
-    const text = await this.#told("train", { write: [row.number] });
+    // By its teeth: nothing is searched once more.
+    const text = await this.#told("train", { teeth: Object.values(row.sets).map((s) => Object.values(s.teeth).join("/")) });
     // Another row, or another wish, may have come before it.
     if (this.opening !== row.number) return;
     this.opening = null;

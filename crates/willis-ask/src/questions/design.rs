@@ -26,7 +26,7 @@ use crate::{Attachment, Extra, File, Form, Given, Holds, Of, Question, Refusal};
 ///
 /// Without a file, a kind of drive with its ratio will do: --kind with --ratio, perhaps --ring. With --like a train of your
 /// own is marked among the rows; without a file it is also where the search begins. With --write rows are train files for
-/// every other command.
+/// every other command; with --teeth so are tooth numbers, without a search.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -37,7 +37,7 @@ pub struct Design {
     /// A train that exists: a row of its own. Without FILE, trains with its connections, ratios and rings are searched.
     #[cfg_attr(feature = "clap", arg(long, value_name = "TRAIN.toml"))]
     pub like: Option<Attachment>,
-    /// Without a file: the kind of drive, simple, two-stage or 3k.
+    /// Without a file: the kind of drive, simple, two-stage, 3k, stepped, two-rings or ravigneaux.
     #[cfg_attr(feature = "clap", arg(long, value_name = "KIND", conflicts_with_all = ["file", "like"]))]
     pub kind: Option<String>,
     /// Of --kind: the ratio, a number or low..high.
@@ -71,9 +71,20 @@ pub struct Design {
     /// Rows of all trains that satisfy the wish, not only of those that no other one beats.
     #[cfg_attr(feature = "clap", arg(long))]
     pub all: bool,
+    /// Compute so many trains at most with the laws of friction of the file, in its operations, so that these laws rank them:
+    /// all trains where there are no more, else those that no other one beats. With 0 mesh efficiencies rank. Default: 500.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TRAINS"))]
+    pub recompute: Option<u64>,
     /// Give these rows as train files, by their numbers: 3, or 1,2,5 into a folder.
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "ROWS"))]
     pub write: Vec<u64>,
+    /// Give the train with these teeth as a train file, without a search: 12/47/105/40/99 as in a row, of several sets
+    /// 20/12/44,22/13/48.
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_delimiter = ',', value_name = "TEETH", conflicts_with_all = ["write", "shard", "all", "resume"])
+    )]
+    pub teeth: Vec<String>,
     /// Search only a part of the space: 2/8 is the second of eight.
     #[cfg_attr(feature = "clap", arg(long, value_name = "K/N"))]
     pub shard: Option<String>,
@@ -162,7 +173,8 @@ impl Design {
 
     fn request(&self) -> Result<teeth::Request, Refusal> {
         let mut wrong = Diagnostics::default();
-        let mut request = teeth::Request { top: self.top, all: self.all, ..teeth::Request::default() };
+        let mut request =
+            teeth::Request { top: self.top, all: self.all, recompute: self.recompute, ..teeth::Request::default() };
         if let Some(sort) = &self.sort {
             match sort.parse::<Objective>() {
                 Ok(sort) => request.sort = Some(sort),
@@ -195,6 +207,10 @@ impl Design {
         work: &dyn Work,
     ) -> Result<DesignFound, Refusal> {
         let request = self.request()?;
+        if !self.teeth.is_empty() {
+            let report = design.answer_for(&self.teeth)?;
+            return Ok(DesignFound { report, design: Some(design), progress, stopped: false });
+        }
         let report = design.answer_of(progress.clone(), &request, work).map_err(|w| Refusal::File(w, file.clone()))?;
         // Rows are worked out after the search, and may be what was stopped.
         Ok(DesignFound { report, design: Some(design), progress, stopped: work.cancelled() })
@@ -262,12 +278,19 @@ impl Question for Design {
             [("kind", self.kind.is_some()), ("file", self.file.is_some())],
             [("kind", self.kind.is_some()), ("like", self.like.is_some())],
             [("shard", self.shard.is_some()), ("all", self.all)],
+            [("teeth", !self.teeth.is_empty()), ("write", !self.write.is_empty())],
+            [("teeth", !self.teeth.is_empty()), ("shard", self.shard.is_some())],
+            [("teeth", !self.teeth.is_empty()), ("all", self.all)],
+            [("teeth", !self.teeth.is_empty()), ("resume", !self.resume.is_empty())],
         ])
     }
 
     fn ask(&self, _: &[Given], work: &dyn Work) -> Result<DesignFound, Refusal> {
         let request = self.request()?;
         let (design, file) = self.read()?;
+        if !self.teeth.is_empty() {
+            return self.found(design, &file, Progress::default(), work);
+        }
         let before = self.resumed(&design)?;
         let progress = design.search(before, request.shard, work).map_err(|w| Refusal::File(w, file.clone()))?;
         self.found(design, &file, progress, work)
@@ -290,7 +313,7 @@ impl Question for Design {
     }
 
     fn natural_form(&self) -> &'static str {
-        if self.write.is_empty() { "text" } else { "train" }
+        if self.write.is_empty() && self.teeth.is_empty() { "text" } else { "train" }
     }
 
     fn write(&self, answer: &DesignFound, form: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
@@ -334,13 +357,16 @@ impl Question for Design {
     }
 
     fn told(&self, answer: &DesignFound) -> Vec<String> {
-        match (&answer.report.rows[..], self.write.is_empty()) {
+        match (&answer.report.rows[..], self.write.is_empty() && self.teeth.is_empty()) {
             ([_, ..], true) => vec!["note: `write` gives a row as a train file".to_owned()],
             _ => vec![],
         }
     }
 
     fn piece(&self, _: &[Given], k: usize, n: usize, work: &dyn Work) -> Result<Vec<u8>, Refusal> {
+        if !self.teeth.is_empty() {
+            return Ok(serde_json::to_vec(&Progress::default()).expect("plain data"));
+        }
         let (design, file) = self.read()?;
         let shard = Some((k as u64 + 1, n as u64));
         let part = design.search(Progress::default(), shard, work).map_err(|w| Refusal::File(w, file))?;

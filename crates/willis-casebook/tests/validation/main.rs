@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 mod contract;
+mod design;
 mod galvagno;
 mod losses;
 mod modelica;

@@ -29,9 +29,9 @@ pub struct DesignAnswer {
     pub waterfall: Vec<Stage>,
     /// What rows are judged by; the first one is that by which they are sorted unless another was asked for.
     pub objectives: Vec<Objective>,
-    /// With which losses efficiencies were computed that ranked the trains, in words.
-    pub ranked_by: String,
-    /// How many trains no other one beats in every objective.
+    /// With which losses the efficiencies were computed that ranked the trains.
+    pub ranked_by: Ranking,
+    /// How many trains no other one beats in every objective; where laws ranked all trains, under the laws.
     pub front: u64,
     /// What the rows are sorted by.
     pub sorted_by: Objective,
@@ -144,9 +144,82 @@ pub struct DesignRow {
     pub element_torque: Option<f64>,
     /// Whether all its efficiencies come from the certified solver and are proved unique.
     pub certified: bool,
+    /// What the laws of friction of the file make of its efficiencies, where it has any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub laws: Option<LawRow>,
     /// The operations of the file, with its laws of friction; shown rows only.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub operations: Named<OperationRow>,
+}
+
+/// The losses that ranked trains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum RankedBy {
+    /// Mesh efficiencies, which are the same at every load and speed.
+    MeshEfficiencies,
+    /// Laws of friction in the operations of the file.
+    Laws,
+}
+
+/// Which trains were computed with the laws of friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum Recomputed {
+    /// None: the file has no laws with an operation of a state that has a target, or none were asked for.
+    None,
+    /// Those that are shown; the laws rank nothing.
+    Shown,
+    /// Those that no other one beats by mesh efficiencies. Others may be better under the laws.
+    Front,
+    /// All that satisfy every wish that does not depend on the laws.
+    All,
+}
+
+/// What ranked the trains of an answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Ranking {
+    /// With which losses.
+    pub by: RankedBy,
+    /// Operations whose least efficiency stands for `forward`; where there are none, that of the meshes does.
+    pub forward: Vec<String>,
+    /// Operations whose least efficiency stands for `backward`.
+    pub backward: Vec<String>,
+    /// Which trains were computed with the laws.
+    pub recomputed: Recomputed,
+    /// How many these are.
+    pub trains: u64,
+    /// How many of them satisfy the demands on efficiency under the laws; absent where the laws rank nothing.
+    pub satisfy: Option<u64>,
+    /// How many of them have no single answer under the laws, and are not ranked or come last.
+    pub open: u64,
+    /// How many trains no other one beats by mesh efficiencies.
+    pub front_before: u64,
+    /// The same in words.
+    pub words: String,
+}
+
+/// A train under the laws of friction of its file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct LawRow {
+    /// Least efficiency of the operations that send power from input to output; absent where there is none, or friction
+    /// locks, or nothing comes out.
+    pub forward: Option<f64>,
+    /// Least efficiency of the operations that send power back.
+    pub backward: Option<f64>,
+    /// Whether friction locks one of the operations that send power back.
+    pub self_locking: bool,
+    /// Demands on efficiency that it misses under the laws.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fails: Vec<String>,
 }
 
 /// A train that exists, among those that were found.

@@ -21,7 +21,7 @@
 //! ```
 //!
 //! A set is designed when one of its tooth numbers is a text (`"18..60"`, `"18.. odd"`) or a list. Sets with sun and ring,
-//! stepped sets with one sun and two rings, and Ravigneaux sets can be; other sets keep the teeth they have.
+//! stepped sets with one sun and one or two rings or with two rings alone, and Ravigneaux sets can be; other sets keep the teeth they have.
 
 use std::ops::Range;
 
@@ -339,6 +339,8 @@ pub(crate) fn paths(kind: SetKind) -> &'static [&'static str] {
         SetKind::Wolfrom => {
             &["suns.0.teeth", "suns.0.planet_teeth", "rings.0.teeth", "rings.1.planet_teeth", "rings.1.teeth"]
         }
+        SetKind::Stepped => &["suns.0.teeth", "suns.0.planet_teeth", "rings.0.planet_teeth", "rings.0.teeth"],
+        SetKind::Rings => &["rings.0.teeth", "rings.0.planet_teeth", "rings.1.planet_teeth", "rings.1.teeth"],
         SetKind::Ravigneaux => {
             &["small_sun.teeth", "large_sun.teeth", "long_planet.teeth", "ring.teeth", "short_planet.teeth"]
         }
@@ -349,7 +351,12 @@ pub(crate) fn paths(kind: SetKind) -> &'static [&'static str] {
 pub(crate) fn set_kind(set: &Item) -> Option<SetKind> {
     match set.get("type").and_then(Item::as_str).unwrap_or("simple") {
         "simple" => Some(SetKind::Simple),
-        "stepped" => Some(SetKind::Wolfrom),
+        "stepped" => Some(match (tables(set.get("suns")), tables(set.get("rings"))) {
+            (1, 1) => SetKind::Stepped,
+            (0, 2) => SetKind::Rings,
+            // Of this kind or of none.
+            _ => SetKind::Wolfrom,
+        }),
         "ravigneaux" => Some(SetKind::Ravigneaux),
         _ => None,
     }
@@ -358,7 +365,7 @@ pub(crate) fn set_kind(set: &Item) -> Option<SetKind> {
 /// The tables that say how many planets there are.
 pub(crate) fn planet_tables(kind: SetKind) -> &'static [&'static str] {
     match kind {
-        SetKind::Simple | SetKind::Wolfrom => &["planet"],
+        SetKind::Simple | SetKind::Wolfrom | SetKind::Stepped | SetKind::Rings => &["planet"],
         SetKind::Ravigneaux => &["short_planet", "long_planet"],
     }
 }
@@ -671,7 +678,8 @@ impl Design {
                 let shape = (tables(set.get("suns")), tables(set.get("rings")));
                 if shape != (1, 2) {
                     let message = format!(
-                        "set `{name}`: ranges are known for stepped sets with one sun and two rings, not {} and {}",
+                        "set `{name}`: ranges are known for stepped sets with one sun and one or two rings, or two rings \
+                         alone, not {} and {}",
                         shape.0, shape.1
                     );
                     r.report(Diagnostic::new(Code::Unfit, "", message), &place, set.span());
@@ -951,6 +959,8 @@ pub(crate) fn substitute(
             SetKind::Wolfrom => {
                 &["suns.0.shift", "suns.0.planet.shift", "rings.0.shift", "rings.1.planet.shift", "rings.1.shift"]
             }
+            SetKind::Stepped => &["suns.0.shift", "suns.0.planet.shift", "rings.0.planet.shift", "rings.0.shift"],
+            SetKind::Rings => &["rings.0.shift", "rings.0.planet.shift", "rings.1.planet.shift", "rings.1.shift"],
             SetKind::Ravigneaux => {
                 &["small_sun.shift", "large_sun.shift", "long_planet.shift", "ring.shift", "short_planet.shift"]
             }

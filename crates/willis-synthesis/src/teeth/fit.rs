@@ -298,6 +298,28 @@ mod tests {
         assert!(clears(-3, 1, 5));
     }
 
+    /// Two central gears alone on two steps, a sun and a ring or two rings: by putting planets in.
+    #[test]
+    fn two_gears_across_by_enumeration() {
+        for n in 2..=5 {
+            for (a, p1, b, p2) in
+                [(20, 40, -80, 20), (19, 35, -75, 21), (-80, 30, -76, 26), (-81, 27, -72, 18), (24, 16, -60, 20)]
+            {
+                for more in 0..4 {
+                    let b = b - more;
+                    let wanted = |z: i64, p: i64, k: i64| Rational::new(k * (z + p), n * p);
+                    let fits = (0..n).all(|k| {
+                        (0..p1).any(|j| {
+                            let body = &wanted(a, p1, k) + &Rational::new(j, p1);
+                            (&(&body - &wanted(b, p2, k)) * &Rational::from(p2)).is_integer()
+                        })
+                    });
+                    assert_eq!(fits, assembles_across((a, p1), (b, p2), n), "{n} {a}/{p1} {b}/{p2}");
+                }
+            }
+        }
+    }
+
     /// By putting planets in: the body angles at which a planet fits, compared with the rule.
     #[test]
     fn stepped_assembly_by_enumeration() {

@@ -7,6 +7,8 @@
 //! |---|---|
 //! | sun, ring | `r/s` |
 //! | sun, two rings on stepped planets (3K, Wolfrom) | `r1/s`, `p1 r2/(s p2)` |
+//! | sun and ring on the two steps of the planets | `p1 r/(s p2)` |
+//! | two rings on the two steps of the planets | `p1 r2/(r1 p2)` |
 //! | Ravigneaux | `r/s2`, `r/s1` |
 
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -23,6 +25,10 @@ pub enum SetKind {
     Simple,
     /// A sun and a ring on the first step of the planets, another ring on the second: a 3K or Wolfrom drive.
     Wolfrom,
+    /// A sun on the first step of the planets, a ring on the second.
+    Stepped,
+    /// A ring on each of two steps of the planets, and no sun.
+    Rings,
     /// Small sun, large sun and ring with short and long planets.
     Ravigneaux,
 }
@@ -31,7 +37,7 @@ impl SetKind {
     /// How many variables it has.
     pub fn variables(self) -> usize {
         match self {
-            Self::Simple => 1,
+            Self::Simple | Self::Stepped | Self::Rings => 1,
             Self::Wolfrom | Self::Ravigneaux => 2,
         }
     }
@@ -68,6 +74,8 @@ impl SetKind {
         match self {
             Self::Simple => &["sun", "planet", "ring"],
             Self::Wolfrom => &["sun", "planet_1", "ring_1", "planet_2", "ring_2"],
+            Self::Stepped => &["sun", "planet_1", "planet_2", "ring"],
+            Self::Rings => &["ring_1", "planet_1", "planet_2", "ring_2"],
             Self::Ravigneaux => &["small_sun", "large_sun", "long_planet", "ring"],
         }
     }
@@ -180,6 +188,22 @@ impl Layout {
                     element(p, r1, 1.0, (2, 1), &[1]);
                     element(p, r2, 1.0, (4, 3), &[2]);
                     planet(s, 0, 1);
+                }
+                SetKind::Stepped => {
+                    let (s, p, r) = (end(0, 0), end(0, 1), end(1, 1));
+                    inner.push(p);
+                    tie(s, r, false, 0);
+                    element(s, p, -1.0, (1, 0), &[0]);
+                    element(p, r, 1.0, (3, 2), &[1]);
+                    planet(s, 0, 1);
+                }
+                SetKind::Rings => {
+                    let (p, r1, r2) = (end(0, 0), end(0, 1), end(1, 1));
+                    inner.push(p);
+                    tie(r1, r2, true, 0);
+                    element(p, r1, 1.0, (0, 1), &[0]);
+                    element(p, r2, 1.0, (3, 2), &[1]);
+                    planet(r1, 0, 1);
                 }
                 SetKind::Ravigneaux => {
                     let (s1, long, s2, r) = (end(0, 0), end(1, 1), end(2, 0), end(3, 1));

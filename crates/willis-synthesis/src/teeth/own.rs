@@ -4,12 +4,12 @@ use toml_edit::{DocumentMut, Item};
 use willis::Model;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 
-use super::answer::OwnTrain;
+use super::answer::{DesignAnswer, OwnTrain, Ranking, Recomputed};
 use super::document::{Design, DesignedSet, at, paths, planet_tables, set_kind, tables};
 use super::front::covers;
+use super::laws::Lawful;
 use super::layout::SetKind;
-use super::range::Counts;
-use super::report::operations;
+use super::range::{Counts, MOST_TEETH};
 use super::search::{Needs, Teeth};
 use super::space::SetSpace;
 
@@ -28,7 +28,13 @@ impl Design {
     ///
     /// # Errors
     /// The file cannot be read as a train, or has no sets like those that are designed.
-    pub(crate) fn own(&self, name: &str, text: &str, front: &[Teeth]) -> Result<OwnTrain, Diagnostics> {
+    pub(crate) fn own(
+        &self,
+        name: &str,
+        text: &str,
+        front: &[Vec<f64>],
+        ranking: &Ranking,
+    ) -> Result<OwnTrain, Diagnostics> {
         let model = Model::from_toml(text)?;
         let document: DocumentMut = text.parse().map_err(|_| Diagnostic::new(Code::Syntax, "", "is not valid TOML"))?;
         let all: Vec<Own> = (self.sets.iter().enumerate())
@@ -50,7 +56,10 @@ impl Design {
             return Err(Diagnostic::new(Code::Unfit, "", message).into());
         };
         let mut row = here.row(0, &teeth, &judged);
-        row.operations = operations(model.train(), &self.operation_names());
+        let laws = Lawful::of(model.train(), &self.operation_names(), &self.target_states());
+        let value;
+        (value, row.laws) = self.with_own_laws(&judged, &laws, ranking);
+        row.operations = laws.operations;
         for (k, (state, target)) in self.targets.iter().enumerate() {
             let inside = target.ratio.is_any()
                 || match row.states.get(&target.state).and_then(|s| s.ratio.as_ref()) {
@@ -66,15 +75,76 @@ impl Design {
         let ring = self.limits.ring_diameter.is_some_and(|limit| here.ring(&teeth) > limit * (1.0 + 1e-12));
         fails.extend(ring.then(|| "ring_diameter".to_owned()));
         let later = self.conditions_of_motion();
-        fails.extend(later.into_iter().zip(self.meets(&judged)).filter(|(_, met)| !met).map(|(name, _)| name));
-        let point = self.point(&judged, &teeth);
-        let better = |t: &&Teeth| {
-            let Some(judged) = self.judge(t, self.needs()) else { return false };
-            let other = self.point(&judged, t);
-            covers(&other, &point) && other != point
-        };
+        // Where laws rank all trains, they decide about demands.
+        let decides = if ranking.recomputed == Recomputed::All { &value } else { &judged };
+        fails.extend(later.into_iter().zip(self.meets(decides)).filter(|(_, met)| !met).map(|(name, _)| name));
+        let point = self.point(&value, &teeth);
+        let better = |other: &&Vec<f64>| covers(other, &point) && **other != point;
         let better = front.iter().filter(better).count() as u64;
         Ok(OwnTrain { name: name.to_owned(), fails, better, row })
+    }
+
+    /// The answer for tooth numbers that are given: one row, as a search would show it, and no search. One text a set, in the
+    /// order of the file, with teeth in the order of a row; the short planet of a Ravigneaux set may be left out.
+    ///
+    /// # Errors
+    /// Texts that are no tooth numbers of the sets, or teeth that are not in the space.
+    ///
+    /// # Example
+    /// ```
+    /// use willis_synthesis::teeth::{Design, Start, StartKind};
+    ///
+    /// let start = Start { ratio: Some("100".into()), ..Start::new(StartKind::Wolfrom) };
+    /// let design = Design::from_toml(&start.to_toml())?;
+    /// let answer = design.answer_for(&["12/54/120/44/110".into()])?;
+    /// assert_eq!(answer.rows[0].states.get("as drawn").unwrap().value, 99.0);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn answer_for(&self, teeth: &[String]) -> Result<DesignAnswer, Diagnostics> {
+        let refused = |message: String, hint: String| Diagnostic::new(Code::Unfit, "teeth", message).hint(hint).into();
+        let asked = |set: &DesignedSet| {
+            let gears: Vec<String> = set.space.kind.gears().iter().map(|g| g.replace('_', " ")).collect();
+            format!("{}: {}", set.name, gears.join("/"))
+        };
+        let order = || self.sets.iter().map(asked).collect::<Vec<_>>().join("; ");
+        if teeth.len() != self.sets.len() {
+            let many = |n: usize| if n == 1 { "1 set".to_owned() } else { format!("{n} sets") };
+            let message =
+                format!("teeth of {} are given, but {} is designed", many(teeth.len()), many(self.sets.len()));
+            return Err(refused(message, format!("give the teeth of every set, such as 20/12/44: {}", order())));
+        }
+        let mut here = self.clone();
+        let mut all: Teeth = vec![];
+        for (set, text) in here.sets.iter_mut().zip(teeth) {
+            let numbers: Option<Vec<i64>> = text.split('/').map(|z| z.trim().parse().ok()).collect();
+            let gears = set.space.kind.gears().len();
+            let fits = |z: &Vec<i64>| {
+                let more = usize::from(set.space.kind == SetKind::Ravigneaux);
+                (gears..=gears + more).contains(&z.len()) && z.iter().all(|z| (1..=MOST_TEETH).contains(z))
+            };
+            let Some(mut z) = numbers.filter(fits) else {
+                let message = format!("`{text}` is not the teeth of set `{}`", set.name);
+                return Err(refused(message, format!("give them with strokes, in this order: {}", asked(set))));
+            };
+            let short = if z.len() > gears { z.pop() } else { None };
+            let own = Own { teeth: z, short, planets: 0 };
+            let narrow = SetSpace { ring_limit: set.space.ring_limit, ..alone(&set.space, &own) };
+            let within = set.space.gears.iter().zip(own.teeth.iter().copied().chain(short)).all(|(g, z)| g.contains(z));
+            let free = SetSpace { rules: vec![], ring_limit: None, ..narrow.clone() };
+            if !within || free.all().next().is_none() {
+                let message = format!("the teeth {text} of set `{}` are not in the space of the design", set.name);
+                let hint = "they must lie in the ranges and on one axis, with a mismatch that is allowed".to_owned();
+                return Err(refused(message, hint));
+            }
+            set.space = narrow;
+            all.push(own.teeth);
+        }
+        let Some(judged) = here.judge(&all, Needs::ALL) else {
+            return Err(refused("these teeth have no ratio in a state for which one is asked".into(), order()));
+        };
+        let mut row = here.row(1, &all, &judged);
+        (row.laws, row.operations) = here.row_with_laws(&all, &judged);
+        Ok(here.unsearched(row))
     }
 
     /// What of the ranges and rules a set that exists does not keep.

@@ -7,10 +7,12 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::named::Named;
 use willis::work::Work;
 
-use super::answer::{Completeness, DesignAnswer, DesignRow, OperationRow, SetRange, SetRow, Space, StateRow};
-use super::document::{Design, WIDTH_IN_MODULES, give_geometry, nth, substitute, tables};
+use super::answer::{
+    Completeness, DesignAnswer, DesignRow, Ranking, Recomputed, Relaxation, SetRange, SetRow, Space, StateRow,
+};
+use super::document::{Design, WIDTH_IN_MODULES, give_geometry, substitute};
 use super::fit::Phase;
-use super::search::{Judged, Needs, Progress, Teeth};
+use super::search::{Judged, Progress, Teeth};
 use super::wish::Objective;
 
 /// What of an answer is wanted.
@@ -26,6 +28,9 @@ pub struct Request {
     pub all: bool,
     /// A train that exists: the name of its file and its text.
     pub own: Option<(String, String)>,
+    /// So many trains at most are computed with the laws of friction of the file, so that these rank them; 500 where it is
+    /// none, and with 0 only mesh efficiencies rank.
+    pub recompute: Option<u64>,
 }
 
 impl Design {
@@ -84,33 +89,24 @@ impl Design {
         let sort = request.sort.or(self.objectives.first().copied()).unwrap_or(Objective::Error);
         let (done, complete) = (progress.steps_done(), progress.is_complete());
         let top = request.top.unwrap_or(20);
+        let most = request.recompute.unwrap_or(super::laws::MOST);
         // What was found is not lost because looking for more was interrupted.
-        let best = if request.all && complete { self.best(sort, top, work) } else { None };
-        let of_all = best.is_some();
-        let shown = best.unwrap_or_else(|| progress.front.clone());
-        let mut chosen: Vec<(f64, Teeth, Judged)> = shown
-            .iter()
-            .filter_map(|teeth| {
-                let judged = self.judge(teeth, Needs::ALL)?;
-                let value = self.value(sort, &judged, teeth);
-                Some((if sort.is_better_high() { -value } else { value }, teeth.clone(), judged))
-            })
-            .collect();
-        chosen.sort_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)));
-        chosen.truncate(top);
+        let mut order = self.order(&progress, (sort, top, request.all), most, work);
+        order.trains.truncate(top);
+        let chosen = &order.trains;
         work.begin("certificates", chosen.len() as u64);
         let rows = willis::work::map(work, chosen.len(), |k| {
-            let (_, teeth, judged) = &chosen[k];
-            let mut row = self.row(k as u64 + 1, teeth, judged);
-            row.operations = self.operations(teeth);
+            let train = &chosen[k];
+            let mut row = self.row(k as u64 + 1, &train.teeth, &train.judged);
+            (row.laws, row.operations) = (train.laws.clone(), train.operations.clone());
             work.advance(1);
             row
         });
         // Without a certificate there is no row; the counts stand all the same.
-        let interrupted = rows.is_err() || request.all && complete && !of_all;
+        let interrupted = rows.is_err() || order.interrupted;
         let rows: Vec<DesignRow> = rows.unwrap_or_default();
         let own = match &request.own {
-            Some((name, text)) => Some(self.own(name, text, &progress.front)?),
+            Some((name, text)) => Some(self.own(name, text, &order.front, &order.ranking)?),
             None => None,
         };
         let space = self.space();
@@ -135,10 +131,19 @@ impl Design {
             let message = "the efficiency of some rows is not proved to be the only one; see their verdicts";
             diagnostics.push(Diagnostic::new(Code::NotEnumerated, "", message));
         }
-        let relaxations = if complete && left == 0 { super::relax::relaxations(self, work) } else { vec![] };
+        let by_all = order.ranking.recomputed == Recomputed::All;
+        let is_empty = if by_all { order.trains.is_empty() } else { left == 0 };
+        let relaxations = match complete && is_empty {
+            true if by_all => order.most.iter().map(|m| under_laws(*m)).collect(),
+            true => super::relax::relaxations(self, work),
+            false => vec![],
+        };
         let mut statement = self.statement(&space, complete, done, progress.of, left);
         if interrupted {
             statement += " Rows are missing: working them out was interrupted.";
+        }
+        if let (true, Some(satisfy)) = (by_all, order.ranking.satisfy) {
+            statement += &under_laws_in_words(&order.ranking, satisfy);
         }
         Ok(DesignAnswer {
             format: Format::new(),
@@ -148,15 +153,37 @@ impl Design {
             completeness: Completeness { complete, done, of: progress.of, statement },
             waterfall: progress.waterfall,
             objectives: self.objectives.clone(),
-            ranked_by: "the mesh efficiencies of the file, whatever the load and speed are".into(),
-            front: progress.front.len() as u64,
+            front: if by_all { order.front.len() } else { progress.front.len() } as u64,
+            ranked_by: order.ranking,
             sorted_by: sort,
-            of_all,
+            of_all: order.of_all,
             rows,
             own,
             relaxations,
             diagnostics,
         })
+    }
+
+    /// The answer of tooth numbers that were given.
+    pub(crate) fn unsearched(&self, row: DesignRow) -> DesignAnswer {
+        let statement = "These tooth numbers were given; nothing was searched.".to_owned();
+        DesignAnswer {
+            format: Format::new(),
+            name: self.name.clone(),
+            wish: self.wish(),
+            space: self.space(),
+            completeness: Completeness { complete: false, done: 0, of: 0, statement },
+            waterfall: vec![],
+            objectives: self.objectives.clone(),
+            ranked_by: self.unranked(),
+            front: 0,
+            sorted_by: self.objectives.first().copied().unwrap_or(Objective::Error),
+            of_all: true,
+            rows: vec![row],
+            own: None,
+            relaxations: vec![],
+            diagnostics: vec![],
+        }
     }
 
     /// Ratios that no basic ratios of these ranges reach together: single ones, else pairs, else all.
@@ -278,25 +305,6 @@ impl Design {
         Some(analysis.ratios)
     }
 
-    /// The operations of the file at tooth numbers, with its laws.
-    fn operations(&self, teeth: &Teeth) -> Named<OperationRow> {
-        let names = self.operation_names();
-        if names.is_empty() {
-            return Named::default();
-        }
-        match Model::from_toml(&self.text_of(teeth, None)) {
-            Ok(model) => operations(model.train(), &names),
-            Err(_) => Named::default(),
-        }
-    }
-
-    /// The operations of the file.
-    pub(crate) fn operation_names(&self) -> Vec<String> {
-        let all = self.template.get("operation");
-        let name = |k: usize| nth(all?, k)?.get("name").and_then(toml_edit::Item::as_str).map(str::to_owned);
-        (0..tables(all)).filter_map(name).collect()
-    }
-
     /// What the certified solver says of one state.
     pub(crate) fn certified_ways(&self, teeth: &Teeth, state: &str, judged: &mut Judged) {
         let Some(states) = self.certified(teeth) else { return };
@@ -392,6 +400,7 @@ impl Design {
             member_speed: judged.member_speed,
             element_torque: judged.element_torque,
             certified: all_unique,
+            laws: None,
             operations: Named::default(),
         }
     }
@@ -410,7 +419,7 @@ impl Design {
         self.text_of(&teeth, Some(row))
     }
 
-    fn text_of(&self, teeth: &Teeth, row: Option<&DesignRow>) -> String {
+    pub(crate) fn text_of(&self, teeth: &Teeth, row: Option<&DesignRow>) -> String {
         let mut document = self.template.clone();
         let mut assumed = false;
         for (s, z) in self.sets.iter().zip(teeth) {
@@ -470,16 +479,27 @@ fn short(x: &willis::exact::Rational) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// What a train does in these operations.
-pub(crate) fn operations(train: &willis::Train, names: &[String]) -> Named<OperationRow> {
-    let Ok(analysis) = analyze(train, &Selection::default()) else { return Named::default() };
-    let row = |o: willis::analysis::OperationReport| {
-        let only = match &o.solutions[..] {
-            [one] if o.verdict == Verdict::Unique => Some(one),
-            _ => None,
-        };
-        let efficiency = only.and_then(|s| s.efficiency);
-        (o.name, OperationRow { verdict: o.verdict, efficiency, loss_w: only.map(|s| s.loss_w) })
+/// What is left under the laws, in words.
+fn under_laws_in_words(ranking: &Ranking, satisfy: u64) -> String {
+    let open = match ranking.open {
+        0 => String::new(),
+        1 => "; of 1 they give no single answer".to_owned(),
+        n => format!("; of {} they give no single answer", grouped(n)),
     };
-    analysis.operations.into_iter().filter(|o| names.contains(&o.name)).map(row).collect()
+    let many = |n: u64| if n == 1 { "1 train".to_owned() } else { format!("{} trains", grouped(n)) };
+    format!(
+        " Under the laws of friction {} of {} that satisfy the other wishes {} the demands on efficiency, too{open}.",
+        grouped(satisfy),
+        many(ranking.trains),
+        if satisfy == 1 { "satisfies" } else { "satisfy" }
+    )
+}
+
+/// A demand that keeps a result empty under the laws.
+fn under_laws((objective, now, best, trains): (Objective, f64, f64, u64)) -> Relaxation {
+    let words = format!(
+        "`{objective}` is {now}; under the laws of friction the other wishes leave at most {best:.4}, and {}",
+        if trains == 1 { "1 train satisfies them".to_owned() } else { format!("{trains} trains satisfy them") }
+    );
+    Relaxation { wish: objective.name().into(), now: Some(now), needed: Some(best), trains, words }
 }

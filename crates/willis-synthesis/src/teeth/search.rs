@@ -252,27 +252,24 @@ impl Design {
         whole
     }
 
-    /// The best of all trains that satisfy the wish, whether others beat them or not: so many, by one objective, ties by the
-    /// fewest teeth. None where the work was cancelled before all of them were seen.
-    pub(crate) fn best(&self, sort: Objective, most: usize, work: &dyn Work) -> Option<Vec<Teeth>> {
-        struct Kept<'d> {
+    /// Calls `found` with every train that satisfies the wish. False where the work was cancelled before all of them were
+    /// seen.
+    pub(crate) fn for_each_that_meets(
+        &self,
+        needs: Needs,
+        work: &dyn Work,
+        found: &mut dyn FnMut(Teeth, Judged),
+    ) -> bool {
+        struct Meeting<'d> {
             design: &'d Design,
             needs: Needs,
-            sort: Objective,
-            most: usize,
-            // The worst is the last.
-            rows: BTreeSet<(Order, Teeth)>,
+            found: &'d mut dyn FnMut(Teeth, Judged),
         }
-        impl Kept<'_> {
+        impl Meeting<'_> {
             fn take(&mut self, teeth: Teeth) {
                 let Some(judged) = self.design.judge(&teeth, self.needs) else { return };
-                if !self.design.meets(&judged).all(|m| m) {
-                    return;
-                }
-                let value = self.design.value(self.sort, &judged, &teeth);
-                self.rows.insert((Order(if self.sort.is_better_high() { -value } else { value }), teeth));
-                if self.rows.len() > self.most {
-                    self.rows.pop_last();
+                if self.design.meets(&judged).all(|m| m) {
+                    (self.found)(teeth, judged);
                 }
             }
             fn choose(&mut self, lists: &[Vec<&Item>], teeth: &mut Teeth) {
@@ -284,7 +281,7 @@ impl Design {
                 }
             }
         }
-        impl Receive for Kept<'_> {
+        impl Receive for Meeting<'_> {
             fn single(&mut self, item: &Item) {
                 if item.is_admissible() {
                     self.take(vec![item.teeth.clone()]);
@@ -296,9 +293,7 @@ impl Design {
                 self.choose(&lists, &mut vec![]);
             }
         }
-        let asked = Self { objectives: vec![sort], ..self.clone() };
-        let needs = asked.needs();
-        let mut kept = Kept { design: self, needs, sort, most, rows: BTreeSet::new() };
+        let mut meeting = Meeting { design: self, needs, found };
         let mut whole = true;
         self.walk(false, &mut |outer, walk| {
             work.begin("steps", outer as u64);
@@ -307,11 +302,27 @@ impl Design {
                     whole = false;
                     return;
                 }
-                walk(step..step + 1, &mut kept);
+                walk(step..step + 1, &mut meeting);
                 work.advance(1);
             }
         });
-        whole.then(|| kept.rows.into_iter().map(|(_, teeth)| teeth).collect())
+        whole
+    }
+
+    /// The best of all trains that satisfy the wish, whether others beat them or not: so many, by one objective, ties by the
+    /// fewest teeth. None where the work was cancelled before all of them were seen.
+    pub(crate) fn best(&self, sort: Objective, most: usize, work: &dyn Work) -> Option<Vec<Teeth>> {
+        let needs = Self { objectives: vec![sort], ..self.clone() }.needs();
+        // The worst is the last.
+        let mut rows: BTreeSet<(Order, Teeth)> = BTreeSet::new();
+        let whole = self.for_each_that_meets(needs, work, &mut |teeth, judged| {
+            let value = self.value(sort, &judged, &teeth);
+            rows.insert((Order(if sort.is_better_high() { -value } else { value }), teeth));
+            if rows.len() > most {
+                rows.pop_last();
+            }
+        });
+        whole.then(|| rows.into_iter().map(|(_, teeth)| teeth).collect())
     }
 
     /// The spaces of the sets, in order; sets with the same space share it.
@@ -445,8 +456,11 @@ impl Design {
         let mut product = 1.0;
         for s in &self.sets {
             let [sun, planet, _] = seeds(s.space.kind);
-            let own =
+            let mut own =
                 size(&s.space.gears[sun]) * self.planets_between(&s.space, planet) * s.space.mismatch.len() as f64;
+            if matches!(s.space.kind, SetKind::Stepped | SetKind::Rings) {
+                own *= self.planets_between(&s.space, 2);
+            }
             if own > 3e7 {
                 let message =
                     format!("set `{}` has {own:.0} choices of its first gears; 30 million are the most", s.name);
@@ -719,6 +733,7 @@ impl Design {
             let own = match self.sets[p].space.kind {
                 SetKind::Simple => vec![z[2] / z[0]],
                 SetKind::Wolfrom => vec![z[2] / z[0], z[1] * z[4] / (z[0] * z[3])],
+                SetKind::Stepped | SetKind::Rings => vec![z[3] * z[1] / (z[0] * z[2])],
                 SetKind::Ravigneaux => vec![z[3] / z[1], z[3] / z[0]],
             };
             y[self.layout.first[k]..][..own.len()].copy_from_slice(&own);
@@ -768,7 +783,7 @@ impl Design {
 /// The gears that the first variable of a set is made of.
 fn seeds(kind: SetKind) -> [usize; 3] {
     match kind {
-        SetKind::Simple | SetKind::Wolfrom => [0, 1, 2],
+        SetKind::Simple | SetKind::Wolfrom | SetKind::Stepped | SetKind::Rings => [0, 1, 2],
         SetKind::Ravigneaux => [1, 2, 3],
     }
 }
@@ -915,9 +930,56 @@ mod tests {
         };
     }
 
+    /// A sun on one step of the planets, a held ring on the other.
+    const STEPPED: &str = r#"
+format = 1
+name = "stepped"
+members = ["sun", "carrier"]
+terminals = ["sun", "carrier"]
+[[set]]
+name = "P1"
+type = "stepped"
+suns = [{ member = "sun", teeth = 20, planet_teeth = 40 }]
+rings = [{ member = "frame", teeth = 80, planet_teeth = 20 }]
+carrier = "carrier"
+mesh_efficiency = { external = 0.98, internal = 0.99 }
+"#;
+
+    /// Two rings on two steps, driven by the carrier.
+    const RINGS: &str = r#"
+format = 1
+name = "two rings, stepped"
+members = ["carrier", "ring"]
+terminals = ["carrier", "ring"]
+[[set]]
+name = "P1"
+type = "stepped"
+rings = [{ member = "frame", teeth = 80, planet_teeth = 30 }, { member = "ring", teeth = 76, planet_teeth = 26 }]
+carrier = "carrier"
+mesh_efficiency = { external = 0.98, internal = 0.99 }
+"#;
+
     /// Trains of the repository: the text, and for each designed set its gears as ranges.
     fn cases() -> Vec<(&'static str, Vec<(&'static str, &'static str)>)> {
         vec![
+            (
+                STEPPED,
+                vec![
+                    ("P1.suns.0.teeth", "18..22"),
+                    ("P1.suns.0.planet_teeth", "38..42"),
+                    ("P1.rings.0.planet_teeth", "18..22"),
+                    ("P1.rings.0.teeth", "70..90"),
+                ],
+            ),
+            (
+                RINGS,
+                vec![
+                    ("P1.rings.0.teeth", "76..84"),
+                    ("P1.rings.0.planet_teeth", "28..32"),
+                    ("P1.rings.1.planet_teeth", "24..30"),
+                    ("P1.rings.1.teeth", "60..90"),
+                ],
+            ),
             (
                 example!("zf-8hp70.toml"),
                 vec![
@@ -1212,7 +1274,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_search_make_the_whole() {
-        let (text, ranges) = &cases()[2];
+        let (text, ranges) = &cases()[4];
         let design = design(text, ranges, r#"["assembly"]"#);
         let serial = &willis::work::Serial;
         let whole = design.search(Progress::default(), None, serial).unwrap();
@@ -1234,7 +1296,7 @@ mod tests {
                 true
             }
         }
-        let (text, ranges) = &cases()[2];
+        let (text, ranges) = &cases()[4];
         let answer = design(text, ranges, "[]").answer(&super::super::report::Request::default(), &Stops).unwrap();
         assert!(!answer.completeness.complete && answer.completeness.done == 0);
         assert!(answer.completeness.statement.contains("0.0 % of the space is done"));

@@ -120,6 +120,21 @@ fn chain(rack: Rack, [s, p, r]: [i64; 3]) -> Option<([f64; 3], f64)> {
     None
 }
 
+/// Shifts of a central gear, which may be a ring, and of the step of a planet with which it meshes at a distance.
+fn step(rack: Rack, (teeth, is_ring): (i64, bool), planet: i64, twice_distance: f64) -> Option<[f64; 2]> {
+    trials(rack, rack.least(planet)).find_map(|x| {
+        let own = || wheel(planet, false, x);
+        let shift = other(rack, own(), wheel(teeth, is_ring, 0.0), twice_distance)?;
+        let most = if is_ring { 2.0 * MOST } else { MOST };
+        if shift.abs() > most || !is_ring && shift < rack.least(teeth) {
+            return None;
+        }
+        let central = wheel(teeth, is_ring, shift);
+        let wheels = if is_ring { [own(), central] } else { [central, own()] };
+        sound(rack, wheels, Some(twice_distance)).then_some([shift, x])
+    })
+}
+
 /// Shifts for every gear of a set, in the order of [`SetKind::gears`], with the short planet of a Ravigneaux set after
 /// them; positive moves teeth outward, also on a ring. None where no choice is sound.
 ///
@@ -142,6 +157,15 @@ fn choose(kind: SetKind, z: &[i64], rack: Rack) -> Option<Vec<f64>> {
                 sound(rack, [planet(), wheel(z[4], true, ring)], Some(a)).then_some([x, ring])
             })?;
             [&first[..], &second].concat()
+        }
+        SetKind::Stepped | SetKind::Rings => {
+            let first_is_ring = kind == SetKind::Rings;
+            let first = if first_is_ring { z[0] - z[1] } else { z[0] + z[1] };
+            distances(rack, first as f64, (z[3] - z[2]) as f64).find_map(|a| {
+                let [one, planet_1] = step(rack, (z[0], first_is_ring), z[1], a)?;
+                let [two, planet_2] = step(rack, (z[3], true), z[2], a)?;
+                Some(vec![one, planet_1, planet_2, two])
+            })?
         }
         SetKind::Ravigneaux => {
             let ([large, long, ring], _) = chain(rack, [z[1], z[2], z[3]])?;

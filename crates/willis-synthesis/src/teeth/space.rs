@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::fit::{self, Length, Ravigneaux, assembles_simple, compare, gcd, planets_clear, reduced};
+use super::fit::{self, Length, Ravigneaux, assembles_across, assembles_simple, compare, gcd, planets_clear, reduced};
 use super::layout::SetKind;
 use super::range::{Counts, MOST_TEETH};
 use super::rule::Rule;
@@ -127,9 +127,34 @@ impl SetSpace {
     pub fn all(&self) -> impl Iterator<Item = Vec<i64>> + '_ {
         let seeds = self.seeds();
         let simple = self.kind == SetKind::Simple;
-        seeds.into_iter().flat_map(move |seed| {
-            let items: Vec<Item> = if simple { vec![self.item(seed.to_vec())] } else { self.second(seed) };
-            items.into_iter().filter(|i| i.passed.last().is_some_and(|p| *p != 0)).map(|i| i.teeth)
+        let grown = seeds.into_iter().flat_map(
+            move |seed| {
+                if simple { vec![self.item(seed.to_vec())] } else { self.second(seed) }
+            },
+        );
+        let stepped = self.stepped().map(|z| self.item(z.to_vec()));
+        grown.chain(stepped).filter(Item::is_admissible).map(|i| i.teeth)
+    }
+
+    /// Two central gears on two steps of the planets on one axis: `z1, p1, p2, z2`. Nothing for other sets.
+    fn stepped(&self) -> impl Iterator<Item = [i64; 4]> + '_ {
+        let first_is_ring = self.kind == SetKind::Rings;
+        let mismatch: &[i64] = match self.kind {
+            SetKind::Stepped | SetKind::Rings => &self.mismatch,
+            _ => &[],
+        };
+        let most = if mismatch.is_empty() { 0 } else { self.most(3) };
+        let first = if first_is_ring { self.most(0) } else { most };
+        mismatch.iter().flat_map(move |d| {
+            self.gear(0).within(1, first).flat_map(move |z1| {
+                // Twice the distance, less the mismatch: z1 + p1 or z1 − p1; the second ring has p2 more.
+                self.gear(1).within(1, if first_is_ring { z1 - 1 } else { most - z1 - d - 1 }).flat_map(move |p1| {
+                    let twice = if first_is_ring { z1 - p1 } else { z1 + p1 } + d;
+                    let last = if twice > 0 { most - twice } else { 0 };
+                    let of = move |p2| [z1, p1, p2, twice + p2];
+                    self.gear(2).within(1, last).map(of).filter(|z| self.gear(3).contains(z[3]))
+                })
+            })
         })
     }
 
@@ -138,6 +163,7 @@ impl SetSpace {
         let [sun, planet, ring] = match self.kind {
             SetKind::Simple | SetKind::Wolfrom => [0, 1, 2],
             SetKind::Ravigneaux => [1, 2, 3],
+            SetKind::Stepped | SetKind::Rings => return vec![],
         };
         let most = self.most(ring);
         let mut all = vec![];
@@ -174,7 +200,7 @@ impl SetSpace {
     fn second(&self, [s, p, r]: [i64; 3]) -> Vec<Item> {
         let mut items = vec![];
         match self.kind {
-            SetKind::Simple => {}
+            SetKind::Simple | SetKind::Stepped | SetKind::Rings => {}
             SetKind::Wolfrom => {
                 for d in &self.mismatch {
                     for p2 in self.gear(3).within(1, self.most(4) - s - p - d) {
@@ -243,6 +269,8 @@ impl SetSpace {
         match self.kind {
             SetKind::Simple => teeth[2],
             SetKind::Wolfrom => teeth[2].max(teeth[4]),
+            SetKind::Stepped => teeth[3],
+            SetKind::Rings => teeth[0].max(teeth[3]),
             SetKind::Ravigneaux => teeth[3],
         }
     }
@@ -270,10 +298,10 @@ impl SetSpace {
         })
     }
 
-    /// What sets the speeds of the planets, where the basic ratios are given: planets over suns.
+    /// What sets the speeds of the planets, where the basic ratios are given: planets over suns, or over the first ring.
     pub(crate) fn planet_class(&self, z: &[i64]) -> [(i64, i64); 2] {
         match self.kind {
-            SetKind::Simple => [reduced(z[1], z[0]), (0, 1)],
+            SetKind::Simple | SetKind::Stepped | SetKind::Rings => [reduced(z[1], z[0]), (0, 1)],
             SetKind::Wolfrom => [reduced(z[1], z[0]), reduced(z[3], z[0])],
             SetKind::Ravigneaux => [reduced(z[2], z[0]), reduced(z[2], z[1])],
         }
@@ -284,6 +312,7 @@ impl SetSpace {
         let seeds = self.seeds();
         match self.kind {
             SetKind::Simple => seeds.len() as f64,
+            SetKind::Stepped | SetKind::Rings => self.stepped().count() as f64,
             SetKind::Ravigneaux => seeds.iter().map(|s| self.gear(0).within(1, s[2] - 1).count() as f64).sum(),
             SetKind::Wolfrom => {
                 let (planet, ring) = (self.gear(3), self.gear(4));
@@ -327,23 +356,35 @@ impl SetSpace {
                 let across = (z[2] * z[3] - z[4] * z[1]) / gcd(z[1], z[3]);
                 each(&|n| sum % n == 0 && across % n == 0)
             }
+            (SetKind::Stepped, Rule::Assembly) => each(&|n| assembles_across((z[0], z[1]), (-z[3], z[2]), n)),
+            (SetKind::Rings, Rule::Assembly) => each(&|n| assembles_across((-z[0], z[1]), (-z[3], z[2]), n)),
             (SetKind::Ravigneaux, Rule::Assembly) => each(&|n| Ravigneaux::of(z).assembles(n)),
             (SetKind::Simple, Rule::Clearance) => each(&|n| planets_clear((z[0] + z[2], 2), n, z[1], self.gap)),
             (SetKind::Wolfrom, Rule::Clearance) => {
                 let sum = z[0] + z[1] + z[2] - z[1] + z[4] - z[3];
                 each(&|n| planets_clear((sum, 3), n, z[1].max(z[3]), self.gap))
             }
+            (SetKind::Stepped | SetKind::Rings, Rule::Clearance) => {
+                let first = if self.kind == SetKind::Rings { z[0] - z[1] } else { z[0] + z[1] };
+                each(&|n| planets_clear((first + z[3] - z[2], 2), n, z[1].max(z[2]), self.gap))
+            }
             (SetKind::Ravigneaux, Rule::Clearance) => each(&|n| Ravigneaux::of(z).long_clears(n, self.gap)),
             (SetKind::Simple, Rule::Interference) => whole(z[2] - z[1] >= RING_OVER_PLANET),
             (SetKind::Wolfrom, Rule::Interference) => {
                 whole(z[2] - z[1] >= RING_OVER_PLANET && z[4] - z[3] >= RING_OVER_PLANET)
             }
+            (SetKind::Stepped, Rule::Interference) => whole(z[3] - z[2] >= RING_OVER_PLANET),
+            (SetKind::Rings, Rule::Interference) => {
+                whole(z[0] - z[1] >= RING_OVER_PLANET && z[3] - z[2] >= RING_OVER_PLANET)
+            }
             (SetKind::Ravigneaux, Rule::Interference) => whole(z[3] - z[2] >= RING_OVER_PLANET),
             (_, Rule::Hunting) => whole(self.kind.hunts(z)),
             (SetKind::Simple, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[2] % n == 0),
             (SetKind::Wolfrom, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[2] % n == 0 && z[4] % n == 0),
+            (SetKind::Stepped | SetKind::Rings, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[3] % n == 0),
             (SetKind::Ravigneaux, Rule::InPhase) => each(&|n| z[0] % n == 0 && z[1] % n == 0 && z[3] % n == 0),
-            (SetKind::Simple | SetKind::Wolfrom, Rule::InSequence) => each(&|n| prime(z[0], n)),
+            (SetKind::Rings, Rule::InSequence) => each(&|n| prime(z[0], n) && prime(z[3], n)),
+            (SetKind::Simple | SetKind::Wolfrom | SetKind::Stepped, Rule::InSequence) => each(&|n| prime(z[0], n)),
             (SetKind::Ravigneaux, Rule::InSequence) => each(&|n| prime(z[0], n) && prime(z[1], n)),
             (_, Rule::Shifts) => whole(super::shift::shifts(self.kind, z, self.rack).is_some()),
         }
@@ -374,6 +415,19 @@ impl SetSpace {
                 None => groups.push(Group::new(exact, items, vec![seed])),
             }
         }
+        let mut stepped: Vec<((i64, i64), [i64; 4])> = self
+            .stepped()
+            .filter(|z| every_stage || self.admitted(z) != 0)
+            .map(|z| (reduced(z[3] * z[1], z[0] * z[2]), z))
+            .collect();
+        stepped.sort_by(|a, b| compare(a.0, b.0).then_with(|| a.1.cmp(&b.1)));
+        for (exact, z) in stepped {
+            let item = self.item(z.to_vec());
+            match groups.last_mut().filter(|g| g.exact == exact) {
+                Some(g) => g.items.push(item),
+                None => groups.push(Group::new(exact, vec![item], vec![])),
+            }
+        }
         for g in &mut groups {
             g.count(self.stages());
         }
@@ -383,10 +437,12 @@ impl SetSpace {
     /// Bounds of its variables; none where it has no teeth.
     pub(crate) fn bounds(&self) -> Option<Vec<[f64; 2]>> {
         let of = |z: &[i64; 3]| z[2] as f64 / z[0] as f64;
-        let seeds = self.seeds();
-        let first = seeds.iter().map(of).fold([f64::INFINITY, 0.0], |b: [f64; 2], y| [b[0].min(y), b[1].max(y)]);
+        let across = |z: [i64; 4]| (z[3] * z[1]) as f64 / (z[0] * z[2]) as f64;
+        let values: Vec<f64> = self.seeds().iter().map(of).chain(self.stepped().map(across)).collect();
+        let first = values.iter().fold([f64::INFINITY, 0.0], |b: [f64; 2], y| [b[0].min(*y), b[1].max(*y)]);
+        let is_empty = values.is_empty();
         let all = if self.kind.variables() == 1 { vec![first] } else { vec![first, self.second_bounds()] };
-        (!seeds.is_empty() && all.iter().all(|b| b[0] > 0.0 && b[1].is_finite())).then_some(all)
+        (!is_empty && all.iter().all(|b| b[0] > 0.0 && b[1].is_finite())).then_some(all)
     }
 
     /// Bounds of the second variable.
@@ -394,7 +450,7 @@ impl SetSpace {
         let least = |k: usize| self.gear(k).least().unwrap_or(1).max(1) as f64;
         let most = |k: usize| self.most(k) as f64;
         match self.kind {
-            SetKind::Simple => [0.0, f64::INFINITY],
+            SetKind::Simple | SetKind::Stepped | SetKind::Rings => [0.0, f64::INFINITY],
             SetKind::Wolfrom => {
                 // It is p1 r2/(s p2) with r2 > p2 and s + 2 p1 + d = r1.
                 let rest = most(2) - self.least_mismatch() as f64;
@@ -412,6 +468,7 @@ impl SetKind {
         let meshes: &[[usize; 2]] = match self {
             Self::Simple => &[[0, 1], [1, 2]],
             Self::Wolfrom => &[[0, 1], [1, 2], [3, 4]],
+            Self::Stepped | Self::Rings => &[[0, 1], [2, 3]],
             Self::Ravigneaux => &[[1, 2], [2, 3], [0, 4], [4, 2]],
         };
         let given = meshes.iter().filter(|m| m[0].max(m[1]) < teeth.len());
@@ -453,7 +510,8 @@ impl Group {
                         let z = &item.teeth;
                         let y = match space.kind {
                             SetKind::Wolfrom => reduced(z[1] * z[4], z[0] * z[3]),
-                            SetKind::Simple | SetKind::Ravigneaux => reduced(z[3], z[0]),
+                            // Only sets of two variables have children.
+                            _ => reduced(z[3], z[0]),
                         };
                         items.push((y, item));
                     }
@@ -529,21 +587,34 @@ mod tests {
         /// Every way through a space finds the teeth that trying all numbers finds.
         #[test]
         fn groups_find_what_brute_force_finds(
-            s in 1i64..14, p in 1i64..14, spans in [1i64..6, 1..6, 1..6], most in 10i64..60, kind in 0usize..3,
+            s in 1i64..14, p in 1i64..14, spans in [1i64..6, 1..6, 1..6], most in 10i64..60, kind in 0usize..5,
             mismatch in proptest::collection::btree_set(-4i64..=4, 1..4), second in 10i64..60,
         ) {
-            let kind = [SetKind::Simple, SetKind::Wolfrom, SetKind::Ravigneaux][kind];
+            let all_kinds =
+                [SetKind::Simple, SetKind::Wolfrom, SetKind::Ravigneaux, SetKind::Stepped, SetKind::Rings];
+            let kind = all_kinds[kind];
             let [sun, planet, other] =
                 [Counts::range(s, s + spans[0]), Counts::range(p, p + spans[1]), Counts::range(p, p + spans[2])];
             let (ring, ring_2) = (Counts::range(1, most), Counts::range(1, second));
             let all = |c: &Counts| c.within(1, 100).collect::<Vec<i64>>();
             let mut brute = vec![];
+            if matches!(kind, SetKind::Stepped | SetKind::Rings) {
+                let first = if kind == SetKind::Rings { &ring } else { &sun };
+                for z1 in all(first) { for p1 in all(&planet) { for p2 in all(&other) { for z2 in all(&ring_2) {
+                    let distance = if kind == SetKind::Rings { z1 - p1 } else { z1 + p1 };
+                    let fits = distance > 0 && z2 > p2 && mismatch.contains(&(z2 - p2 - distance));
+                    if fits {
+                        brute.push(vec![z1, p1, p2, z2]);
+                    }
+                }}}}
+            }
             for s in all(&sun) { for p in all(&planet) { for d in &mismatch {
                 let r = s + 2 * p + d;
                 if r <= p || !ring.contains(r) {
                     continue;
                 }
                 match kind {
+                    SetKind::Stepped | SetKind::Rings => {}
                     SetKind::Simple => brute.push(vec![s, p, r]),
                     SetKind::Ravigneaux => {
                         brute.extend(all(&other).into_iter().filter(|z| *z < r).map(|z| vec![z, s, p, r]));
@@ -560,6 +631,8 @@ mod tests {
                 SetKind::Simple => vec![sun, planet, ring],
                 SetKind::Wolfrom => vec![sun, planet, ring, other, ring_2],
                 SetKind::Ravigneaux => vec![other, sun, planet, ring],
+                SetKind::Stepped => vec![sun, planet, other, ring_2],
+                SetKind::Rings => vec![ring, planet, other, ring_2],
             };
             let space = SetSpace::new(kind, gears, Counts::range(3, 3)).mismatch(mismatch);
             brute.sort();

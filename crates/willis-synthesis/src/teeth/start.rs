@@ -23,12 +23,25 @@ pub enum StartKind {
     /// A Wolfrom or 3K drive: the sun drives the second ring through stepped planets, the first ring rests. Ratios from
     /// about 20 to some hundreds of both signs.
     Wolfrom,
+    /// One set with stepped planets: the sun drives the carrier through both steps, the ring rests. Ratios of about 4 to 20.
+    Stepped,
+    /// Two rings on stepped planets and no sun: the carrier drives the second ring, the first one rests. Ratios from about 10
+    /// to some thousands of both signs.
+    TwoRings,
+    /// A Ravigneaux set: the small sun drives the ring, the large sun rests. Ratios of about 1.2 to 4.
+    Ravigneaux,
 }
 
 impl StartKind {
     /// All of them with the names under which they are asked for.
-    pub const ALL: [(&'static str, Self); 3] =
-        [("simple", Self::Simple), ("two-stage", Self::TwoStage), ("3k", Self::Wolfrom)];
+    pub const ALL: [(&'static str, Self); 6] = [
+        ("simple", Self::Simple),
+        ("two-stage", Self::TwoStage),
+        ("3k", Self::Wolfrom),
+        ("stepped", Self::Stepped),
+        ("two-rings", Self::TwoRings),
+        ("ravigneaux", Self::Ravigneaux),
+    ];
 }
 
 impl FromStr for StartKind {
@@ -62,7 +75,7 @@ impl FromStr for StartKind {
 pub struct Start {
     /// The kind of drive.
     pub kind: StartKind,
-    /// The ratio, a number or `low..high`; of either sign for a Wolfrom drive.
+    /// The ratio, a number or `low..high`; of either sign for a Wolfrom drive and one of two rings.
     pub ratio: Option<String>,
     /// Relative tolerance of the ratio: `0.01`.
     pub tolerance: Option<String>,
@@ -83,6 +96,9 @@ const MODULES: [&str; 17] = [
     "0.3 mm", "0.4 mm", "0.5 mm", "0.6 mm", "0.7 mm", "0.8 mm", "0.9 mm", "1 mm", "1.25 mm", "1.5 mm", "2 mm",
     "2.5 mm", "3 mm", "4 mm", "5 mm", "6 mm", "8 mm",
 ];
+
+/// The largest mismatch that profile shift closes, in teeth.
+const MOST_MISMATCH: i64 = 4;
 
 fn text(value: &str) -> String {
     Value::from(value).to_string().trim().to_owned()
@@ -113,10 +129,18 @@ impl Start {
             StartKind::Simple => ("planetary reducer", &["sun", "carrier"][..], "carrier"),
             StartKind::TwoStage => ("two planetary stages", &["sun", "middle", "carrier"][..], "carrier"),
             StartKind::Wolfrom => ("Wolfrom drive", &["sun", "carrier", "ring"][..], "ring"),
+            StartKind::Stepped => ("reducer with stepped planets", &["sun", "carrier"][..], "carrier"),
+            StartKind::TwoRings => ("drive of two rings", &["carrier", "ring"][..], "ring"),
+            StartKind::Ravigneaux => ("Ravigneaux set", &["sun", "carrier", "ring"][..], "ring"),
         };
         let list = |all: &[&str]| format!("[{}]", all.iter().map(|t| text(t)).collect::<Vec<_>>().join(", "));
-        let _ =
-            writeln!(out, "name = {}\nmembers = {}\nterminals = {}", text(name), list(members), list(&["sun", last]));
+        let _ = writeln!(
+            out,
+            "name = {}\nmembers = {}\nterminals = {}",
+            text(name),
+            list(members),
+            list(&[members[0], last])
+        );
         out += "\n[design]\n";
         let _ = writeln!(out, "planets = {}", text(self.planets.as_deref().unwrap_or("3..5")));
         out += "mismatch = [-1, 0, 1]\nrules = [\"assembly\", \"clearance\"]\ngap = 0.5\n";
@@ -143,7 +167,7 @@ impl Start {
         if let Some(tolerance) = &self.tolerance {
             let _ = write!(target, ", tolerance = {}", number(tolerance));
         }
-        if self.kind == StartKind::Wolfrom {
+        if matches!(self.kind, StartKind::Wolfrom | StartKind::TwoRings) {
             target += ", any_sign = true";
         }
         let _ = writeln!(out, "target = [{{ {target} }}]");
@@ -160,6 +184,38 @@ impl Start {
             StartKind::TwoStage => {
                 simple("P1", "sun", "middle");
                 simple("P2", "middle", "carrier");
+            }
+            StartKind::Stepped | StartKind::TwoRings => {
+                let first = match self.kind {
+                    StartKind::Stepped => {
+                        "suns = [{ member = \"sun\", teeth = \"12..60\", planet_teeth = \"12..60\" }]"
+                    }
+                    _ => "",
+                };
+                let ring = |member: &str| {
+                    format!("    {{ member = \"{member}\", teeth = \"..120\", planet_teeth = \"12..60\" }},")
+                };
+                let mut rings = vec![ring("frame")];
+                if self.kind == StartKind::TwoRings {
+                    rings.push(ring("ring"));
+                }
+                let lines: Vec<String> = ["[[set]]", "name = \"P1\"", "type = \"stepped\"", first, "rings = ["]
+                    .into_iter()
+                    .filter(|l| !l.is_empty())
+                    .map(str::to_owned)
+                    .chain(rings)
+                    .chain(["]", "carrier = \"carrier\"", mesh].map(str::to_owned))
+                    .collect();
+                out += &format!("\n{}\n", lines.join("\n"));
+            }
+            StartKind::Ravigneaux => {
+                let _ = writeln!(
+                    out,
+                    "\n[[set]]\nname = \"P1\"\ntype = \"ravigneaux\"\nsmall_sun = {{ member = \"sun\", teeth = \"12..60\" \
+                     }}\nlarge_sun = {{ member = \"frame\", teeth = \"12..60\" }}\nshort_planet = {{ teeth = \"12..60\" \
+                     }}\nlong_planet = {{ teeth = \"12..60\" }}\nring = {{ member = \"ring\", teeth = \"..120\" }}\ncarrier = \
+                     \"carrier\"\n{mesh}"
+                );
             }
             StartKind::Wolfrom => {
                 let _ = writeln!(
@@ -226,9 +282,17 @@ impl Around {
             }
             let own: Vec<Option<i64>> = paths(kind).iter().map(|p| at(&set, p).and_then(Item::as_integer)).collect();
             let Some(ring) = own.iter().flatten().max().copied() else { continue };
-            if let (SetKind::Simple, [Some(s), Some(p), Some(r)]) = (kind, &own[..]) {
-                most = most.max((r - s - 2 * p).abs());
+            let mismatch = match (kind, &own[..]) {
+                (SetKind::Simple, [Some(s), Some(p), Some(r)]) => (r - s - 2 * p).abs(),
+                (SetKind::Stepped, [Some(s), Some(p1), Some(p2), Some(r)]) => (r - p2 - s - p1).abs(),
+                (SetKind::Rings, [Some(r1), Some(p1), Some(p2), Some(r2)]) => (r2 - p2 - r1 + p1).abs(),
+                _ => 0,
+            };
+            // Steps of two modules lie on one axis, but not by their teeth: such a set keeps the teeth that it has.
+            if mismatch > MOST_MISMATCH && kind != SetKind::Simple {
+                continue;
             }
+            most = most.max(mismatch);
             designed += 1;
             for (path, z) in paths(kind).iter().zip(&own) {
                 // What is not given is left to be found.
@@ -250,7 +314,11 @@ impl Around {
         if designed == 0 {
             let message = "no set of this train is one whose teeth can be found";
             let d = Diagnostic::new(Code::Unfit, "set", message);
-            return Err(d.hint("these are sets with sun and ring, 3K drives, and Ravigneaux sets").into());
+            return Err(d
+                .hint(
+                    "these are sets with sun and ring, 3K drives, other stepped sets with a ring, and Ravigneaux sets",
+                )
+                .into());
         }
         if let Some(sets) = document.get_mut("set") {
             forget(sets);
@@ -279,7 +347,7 @@ impl Around {
         let mut wish = toml_edit::Table::new();
         let written = |v: &String| number(v).parse::<Value>().unwrap_or_else(|_| Value::from(v.as_str()));
         wish.insert("tolerance", toml_edit::value(written(&self.tolerance)));
-        wish.insert("mismatch", toml_edit::value(format!("-{0}..{0}", most.min(4))));
+        wish.insert("mismatch", toml_edit::value(format!("-{0}..{0}", most.min(MOST_MISMATCH))));
         wish.insert("rules", toml_edit::value(["assembly", "clearance"].into_iter().collect::<toml_edit::Array>()));
         if let Some(ring) = &self.ring {
             let limit: toml_edit::InlineTable = [("ring_diameter", Value::from(ring.as_str()))].into_iter().collect();
@@ -343,6 +411,9 @@ mod tests {
                 StartKind::Simple => "4.2",
                 StartKind::TwoStage => "20..21",
                 StartKind::Wolfrom => "100",
+                StartKind::Stepped => "9.5",
+                StartKind::TwoRings => "60",
+                StartKind::Ravigneaux => "1.5",
             };
             let start = Start { ratio: Some(ratio.into()), ..Start::new(kind) };
             let design = Design::from_toml(&start.to_toml()).unwrap();

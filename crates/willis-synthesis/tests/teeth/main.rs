@@ -2,6 +2,7 @@
 
 mod counts;
 mod files;
+mod laws;
 mod layouts;
 mod own;
 mod steps;

@@ -3,7 +3,7 @@
 use willis::Model;
 use willis::analysis::{Selection, Verdict, analyze};
 use willis::work::Serial;
-use willis_synthesis::teeth::{Around, Design, Objective, Request, Start, StartKind};
+use willis_synthesis::teeth::{Around, Design, Objective, RankedBy, Request, Start, StartKind};
 
 /// All trains of the repository, which are no part of the package.
 fn examples() -> Vec<(String, String)> {
@@ -45,12 +45,14 @@ fn every_train_is_a_row_of_the_design_around_it() {
         assert!(own.fails.iter().all(physical), "{name}: {:?}", own.fails);
         if own.fails.is_empty() {
             assert!(answer.waterfall.last().unwrap().trains > 0, "{name}");
-            // Where it is on the front, nothing of the front beats it.
+            // Where it is on the front, nothing of the front beats it; but under the laws the same teeth with other profile
+            // shifts may.
+            let most = u64::from(answer.ranked_by.by == RankedBy::Laws);
             let is_row = answer
                 .rows
                 .iter()
                 .any(|r| r.sets.iter().map(|s| &s.1.teeth).eq(own.row.sets.iter().map(|s| &s.1.teeth)));
-            assert!(!is_row || own.better == 0, "{name}");
+            assert!(!is_row || own.better <= most, "{name}");
         }
         let train = Model::from_toml(&text).unwrap();
         let alone = willis::unstable::without_laws(&willis::unstable::without_operations(train.train()));
@@ -74,10 +76,13 @@ fn every_train_is_a_row_of_the_design_around_it() {
 /// Every row that is written is read by everything else, with the ratio and the efficiencies of the row.
 #[test]
 fn rows_are_trains_with_what_the_row_says() {
-    for kind in [StartKind::Simple, StartKind::TwoStage, StartKind::Wolfrom] {
+    for (_, kind) in StartKind::ALL {
         let ratio = match kind {
             StartKind::Simple => "4.2",
             StartKind::TwoStage => "20..20.5",
+            StartKind::Stepped => "9..9.2",
+            StartKind::TwoRings => "60..62",
+            StartKind::Ravigneaux => "1.5..1.52",
             _ => "95..105",
         };
         let start = Start { ratio: Some(ratio.into()), ring: Some("80 mm".into()), ..Start::new(kind) };

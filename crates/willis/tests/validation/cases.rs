@@ -215,7 +215,8 @@ fn write_page() {
              (esmail-2018-table-1/README.md); computed losses: [measurements, other programs, worked examples]\
              (losses/README.md), with the misses; a paper: [Wang 2020, a herringbone gearbox]\
              (wang-2020/README.md); motion: [Galvagno 2010, every power flow and transients](galvagno/README.md), \
-             [six Modelica examples](modelica/README.md).\n\n";
+             [six Modelica examples](modelica/README.md); designs: [whole spaces counted, production and published optima]\
+             (design/README.md).\n\n";
     for (case, (t, lines)) in &all {
         let key = case.parent().unwrap().file_name().unwrap().to_str().unwrap();
         writeln!(page, "## {key}\n\nSource: {}\n", text(t, "source").unwrap().trim()).unwrap();

@@ -2,7 +2,7 @@
 
 use willis::diagnostic::{Code, Diagnostic};
 use willis_figure::{Pareto, ParetoAxis, ParetoPoint, draw_pareto};
-use willis_synthesis::teeth::{DesignAnswer, DesignRow, Objective};
+use willis_synthesis::teeth::{DesignAnswer, DesignRow, Objective, RankedBy};
 
 use crate::Refusal;
 
@@ -29,8 +29,8 @@ pub fn picture(a: &DesignAnswer) -> Result<String, Refusal> {
         .map(|r| ParetoPoint {
             label: if r.number == 0 { "yours".into() } else { r.number.to_string() },
             words: words(r),
-            at: [value(x, r), value(y, r)],
-            third: third.map(|o| value(o, r)),
+            at: [value(a, x, r), value(a, y, r)],
+            third: third.map(|o| value(a, o, r)),
             own: r.number == 0,
         })
         .collect();
@@ -55,11 +55,14 @@ pub fn picture(a: &DesignAnswer) -> Result<String, Refusal> {
 
 fn title(o: Objective, a: &DesignAnswer) -> String {
     let metric = a.rows.iter().chain(a.own.as_ref().map(|o| &o.row)).any(|r| r.ring_diameter_m.is_some());
+    let laws = |operations: &[String]| a.ranked_by.by == RankedBy::Laws && !operations.is_empty();
     match o {
         Objective::Error => "Ratio error, %",
         Objective::RingDiameter if metric => "Ring diameter, mm",
         Objective::RingDiameter => "Teeth of the largest ring",
+        Objective::Forward if laws(&a.ranked_by.forward) => "Efficiency forward under the laws, %",
         Objective::Forward => "Efficiency forward, %",
+        Objective::Backward if laws(&a.ranked_by.backward) => "Efficiency backward under the laws, %",
         Objective::Backward => "Efficiency backward, %",
         Objective::LockMargin => "Margin to self-locking",
         Objective::PlanetSpin => "Planet speed / input speed",
@@ -69,7 +72,16 @@ fn title(o: Objective, a: &DesignAnswer) -> String {
     .to_owned()
 }
 
-fn value(o: Objective, r: &DesignRow) -> f64 {
+/// As a point is ranked: where the laws of friction do it, theirs.
+fn value(a: &DesignAnswer, o: Objective, r: &DesignRow) -> f64 {
+    let ranking = &a.ranked_by;
+    if let (RankedBy::Laws, Some(laws)) = (ranking.by, &r.laws) {
+        match o {
+            Objective::Forward if !ranking.forward.is_empty() => return 100.0 * laws.forward.unwrap_or(0.0),
+            Objective::Backward if !ranking.backward.is_empty() => return 100.0 * laws.backward.unwrap_or(0.0),
+            _ => {}
+        }
+    }
     match o {
         Objective::Error => 100.0 * r.error,
         Objective::RingDiameter => r.ring_diameter_m.map_or(r.ring_teeth as f64, |d| 1e3 * d),

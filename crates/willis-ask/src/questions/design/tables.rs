@@ -52,6 +52,9 @@ fn trains(a: &DesignAnswer) -> Table {
         ("member_speed", Number),
         ("element_torque", Number),
         ("certified", Flag),
+        ("laws_forward", Number),
+        ("laws_backward", Number),
+        ("laws_self_locking", Flag),
     ];
     columns.extend(last.map(|(name, kind)| (name.to_owned(), kind)));
     for (operation, _) in sample.iter().flat_map(|r| r.operations.iter()) {
@@ -81,6 +84,9 @@ fn trains(a: &DesignAnswer) -> Table {
             r.member_speed.into(),
             r.element_torque.into(),
             r.certified.into(),
+            r.laws.as_ref().and_then(|l| l.forward).into(),
+            r.laws.as_ref().and_then(|l| l.backward).into(),
+            r.laws.as_ref().map(|l| l.self_locking).into(),
         ]);
         // Of a train without an answer there the cells stay empty, as many as in the other rows.
         for (operation, _) in sample.iter().flat_map(|r| r.operations.iter()) {

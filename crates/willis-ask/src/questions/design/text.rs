@@ -1,6 +1,6 @@
 //! Trains that were found, for eyes.
 
-use willis_synthesis::teeth::{DesignAnswer, DesignRow, Objective};
+use willis_synthesis::teeth::{DesignAnswer, DesignRow, Objective, RankedBy, Recomputed};
 
 use crate::style::{bold, dim, percent, right, set_header, show, significant, table, wrap};
 
@@ -58,6 +58,7 @@ pub fn text(a: &DesignAnswer) -> String {
 }
 
 fn rows(a: &DesignAnswer) -> String {
+    let by_front = a.ranked_by.by == RankedBy::Laws && a.ranked_by.recomputed == Recomputed::Front;
     let shown = match (a.rows.len() as u64, a.of_all) {
         (0, _) => "no train".to_owned(),
         (n, true) => format!("the first {n} of all trains"),
@@ -70,7 +71,17 @@ fn rows(a: &DesignAnswer) -> String {
         .iter()
         .map(|o| format!("{} {}", if o.is_better_high() { "high" } else { "low" }, spoken(*o)))
         .collect();
-    let title = format!("{shown} ({}), sorted by {}", objectives.join(", "), spoken(a.sorted_by));
+    let by = match (by_front, a.ranked_by.by) {
+        (true, _) => " by mesh efficiencies",
+        (_, RankedBy::Laws) => " under the laws of friction",
+        _ => "",
+    };
+    let under = if by_front && matches!(a.sorted_by, Objective::Forward | Objective::Backward) {
+        " under the laws"
+    } else {
+        ""
+    };
+    let title = format!("{shown}{by} ({}), sorted by {}{under}", objectives.join(", "), spoken(a.sorted_by));
     let mut out = wrap(&title, "") + "\n";
     let own = a.own.as_ref().map(|o| &o.row);
     let all: Vec<&DesignRow> = a.rows.iter().chain(own).collect();
@@ -94,7 +105,10 @@ fn rows(a: &DesignAnswer) -> String {
     }
     header.push("error".into());
     header.push(if metric { "ring mm" } else { "ring z" }.into());
-    header.extend(["forward", "backward", "lock", "spin"].map(String::from));
+    header.extend(["forward", "backward"].map(String::from));
+    let laws = [!a.ranked_by.forward.is_empty(), !a.ranked_by.backward.is_empty()];
+    header.extend(["by laws", "back by laws"].iter().zip(laws).filter(|h| h.1).map(|h| (*h.0).to_owned()));
+    header.extend(["lock", "spin"].map(String::from));
     if torque {
         header.push("torque".into());
     }
@@ -133,6 +147,13 @@ fn rows(a: &DesignAnswer) -> String {
         };
         cells.push(efficiency(r.forward, false));
         cells.push(efficiency(r.backward, r.self_locking));
+        let own = r.laws.as_ref();
+        if laws[0] {
+            cells.push(efficiency(own.and_then(|l| l.forward), false));
+        }
+        if laws[1] {
+            cells.push(efficiency(own.and_then(|l| l.backward), own.is_some_and(|l| l.self_locking)));
+        }
         cells.push(r.lock_margin.map_or("never".into(), |m| significant(m, 3)));
         cells.push(significant(r.planet_spin, 3));
         if torque {
@@ -155,7 +176,7 @@ fn rows(a: &DesignAnswer) -> String {
         .collect();
     let same = gears.iter().all(|g| *g == gears[0]);
     let mut told = vec![format!("teeth: {}.", if same { gears[0].clone() } else { gears.join(" · ") })];
-    told.push(format!("Efficiencies: {}.", a.ranked_by));
+    told.push(format!("Efficiencies that rank: {}.", a.ranked_by.words));
     told.push("lock: the factor on all losses at which the output can no longer drive the input.".into());
     told.push(
         match (torque, states > 1) {
