@@ -1,7 +1,9 @@
 //! From start to end: smooth motion, changes of mode, rows and events.
 
+mod hosted;
 mod locate;
 mod pace;
+mod saved;
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -22,6 +24,9 @@ use super::stretch::Watch;
 use super::system::System;
 use super::window::Window;
 use pace::Pace;
+
+pub use hosted::{LossCause, StateInfo};
+pub use saved::NotSaved;
 
 /// How often in a run what a formula does to a held element is looked at, at least.
 const LOOKS: f64 = 1000.0;
