@@ -57,7 +57,9 @@ pub(crate) fn describe(
     );
     interfaces(&mut x, version, interface);
     unit_definitions(&mut x, layout);
-    type_definitions(&mut x, two);
+    if !two {
+        type_definitions(&mut x);
+    }
     x += "  <LogCategories>\n";
     for (name, about) in [
         ("logStatusWarning", "What the reader of the results must know"),
@@ -74,7 +76,8 @@ pub(crate) fn describe(
         (end - start) / 1000.0
     );
     x += "  <ModelVariables>\n";
-    for (k, variable) in layout.variables.iter().enumerate() {
+    // The time, the first of them, is not to be listed in version 2.
+    for (k, variable) in layout.variables.iter().enumerate().skip(usize::from(two)) {
         if two { variable_two(&mut x, layout, k, variable) } else { variable_three(&mut x, layout, k, variable) }
     }
     x += "  </ModelVariables>\n  <ModelStructure>\n";
@@ -131,25 +134,15 @@ fn unit_definitions(x: &mut String, layout: &Layout) {
     x.push_str("  </UnitDefinitions>\n");
 }
 
-fn type_definitions(x: &mut String, two: bool) {
+fn type_definitions(x: &mut String) {
     let item = |x: &mut String, name: &str, value: i64| {
         let _ = writeln!(x, "      <Item name=\"{name}\" value=\"{value}\"/>");
     };
-    let open = |x: &mut String, name: &str| {
-        let _ = match two {
-            true => writeln!(x, "    <SimpleType name=\"{name}\"><Enumeration>"),
-            false => writeln!(x, "    <EnumerationType name=\"{name}\">"),
-        };
-    };
-    let close = if two { "    </Enumeration></SimpleType>\n" } else { "    </EnumerationType>\n" };
-    x.push_str("  <TypeDefinitions>\n");
-    open(x, "Mode");
+    x.push_str("  <TypeDefinitions>\n    <EnumerationType name=\"Mode\">\n");
     MODES.iter().for_each(|(name, value)| item(x, name, *value));
-    x.push_str(close);
-    open(x, "Verdict");
+    x.push_str("    </EnumerationType>\n    <EnumerationType name=\"Verdict\">\n");
     VERDICTS.iter().enumerate().for_each(|(k, name)| item(x, name, k as i64));
-    x.push_str(close);
-    x.push_str("  </TypeDefinitions>\n");
+    x.push_str("    </EnumerationType>\n  </TypeDefinitions>\n");
 }
 
 /// Causality, variability, and what is known at the start.
@@ -189,17 +182,16 @@ fn variable_two(x: &mut String, layout: &Layout, reference: usize, variable: &Va
         Kind::Real(Some(unit)) => format!(" unit=\"{}\"", escaped(unit.name)),
         _ => String::new(),
     };
-    // Counted from 1.
+    // Counted from 1, without the time.
     let derivative = match variable.role {
-        Role::Rate(k) => layout.state(k).map_or(String::new(), |k| format!(" derivative=\"{}\"", k + 1)),
+        Role::Rate(k) => layout.state(k).map_or(String::new(), |k| format!(" derivative=\"{k}\"")),
         _ => String::new(),
     };
     let start = start(variable);
     let _ = match variable.kind {
         Kind::Real(_) => write!(x, "<Real{unit}{derivative}{start}/>"),
-        Kind::Integer => write!(x, "<Integer{start}/>"),
-        Kind::Mode => write!(x, "<Enumeration declaredType=\"Mode\"/>"),
-        Kind::Verdict => write!(x, "<Enumeration declaredType=\"Verdict\"/>"),
+        // Hosts of this version often leave out enumerations.
+        Kind::Integer | Kind::Mode | Kind::Verdict => write!(x, "<Integer{start}/>"),
         Kind::Text => write!(x, "<String{start}/>"),
     };
     x.push_str("</ScalarVariable>\n");
@@ -242,7 +234,7 @@ fn structure(x: &mut String, layout: &Layout, two: bool) {
             }
             let _ = writeln!(x, "    <{name}>");
             for k in of {
-                let _ = writeln!(x, "      <Unknown index=\"{}\"/>", k + 1);
+                let _ = writeln!(x, "      <Unknown index=\"{k}\"/>");
             }
             let _ = writeln!(x, "    </{name}>");
         };

@@ -332,6 +332,7 @@ impl Instance {
             _ => {}
         }
         self.computed()?;
+        self.ready()?;
         let offset = self.offset;
         let outputs = if let Role::Output(k) = role { self.outputs.get(k).copied() } else { None };
         let handle = if let Role::Input(k) = role { self.handles.get(k).copied() } else { None };
@@ -395,11 +396,8 @@ impl Instance {
             return Err(self.of_another_kind(reference, "a whole number"));
         }
         self.computed()?;
+        self.ready()?;
         let output = if let Role::Output(k) = role { self.outputs.get(k).copied() } else { None };
-        if self.run.is_none() {
-            self.ready()?;
-            return self.integer(reference);
-        }
         let run = self.ready()?;
         match (role, output) {
             (Role::Output(_), Some(output)) => Ok(run.read(output) as i64),

@@ -259,7 +259,7 @@ impl Layout {
         }
         all.add(
             "verdict",
-            "Whether the run goes on, or why there is no motion to go on with",
+            "0 the run goes on; 1 finished, 2 no solution, 3 several solutions, 4 too many events, 5 not converged, 6 impact, 7 too long",
             Role::Verdict,
             Kind::Verdict,
             None,
@@ -366,7 +366,7 @@ fn about_column(kind: ColumnKind) -> &'static str {
         }
         ColumnKind::Reaction => "Torque with which the frame holds; no number where it is not determined",
         ColumnKind::Power => "Power: of a source, out of a store, through a variator, or lost in all",
-        ColumnKind::Mode => "State of motion",
+        ColumnKind::Mode => "State of motion: -1 backward, 0 stuck, 1 forward, 2 free",
         ColumnKind::Twist => "Twist of a shaft",
         ColumnKind::Efficiency => "Power that goes out over power that comes in; no number where none comes in",
         ColumnKind::Energy => "Energy that is stored, or was lost so far (counted in co-simulation only)",

@@ -132,10 +132,12 @@ impl Unit {
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, bytes).unwrap();
         }
-        let after = |mark: &str| description.split(mark).nth(1).and_then(|rest| rest.split('"').next()).unwrap().to_owned();
+        let after =
+            |mark: &str| description.split(mark).nth(1).and_then(|rest| rest.split('"').next()).unwrap().to_owned();
         let mark = if version == Version::Two { "guid=\"" } else { "instantiationToken=\"" };
         let resources = folder.join("resources").to_str().unwrap().to_owned();
-        let resources = if version == Version::Two { format!("file://{}", resources.replace(' ', "%20")) } else { resources };
+        let resources =
+            if version == Version::Two { format!("file://{}", resources.replace(' ', "%20")) } else { resources };
         Self {
             token: CString::new(after(mark)).unwrap(),
             resources: CString::new(resources).unwrap(),
@@ -147,7 +149,8 @@ impl Unit {
     /// The reference of a variable.
     fn of(&self, name: &str) -> u32 {
         let document = roxmltree::Document::parse(&self.description).unwrap();
-        let found = document.descendants().find(|n| n.attribute("name") == Some(name) && n.has_attribute("valueReference"));
+        let found =
+            document.descendants().find(|n| n.attribute("name") == Some(name) && n.has_attribute("valueReference"));
         found.unwrap_or_else(|| panic!("{name}")).attribute("valueReference").unwrap().parse().unwrap()
     }
 
@@ -199,7 +202,8 @@ fn descriptions_point_to_what_they_mean() {
         let variables: Vec<_> = document.descendants().filter(|n| n.has_attribute("causality")).collect();
         let mut names: Vec<_> = variables.iter().map(|v| v.attribute("name").unwrap()).collect();
         for (k, v) in variables.iter().enumerate() {
-            assert_eq!(v.attribute("valueReference").unwrap(), k.to_string());
+            let first = usize::from(version == Version::Two);
+            assert_eq!(v.attribute("valueReference").unwrap(), (k + first).to_string());
         }
         for name in ["P1.sun.teeth", "drive", "engagement.B", "drum.speed", "B.mode", "P1.sun-planet.loss", "verdict"] {
             assert!(names.contains(&name), "{name} is not among {names:?}");
@@ -208,8 +212,17 @@ fn descriptions_point_to_what_they_mean() {
         names.dedup();
         assert_eq!(names.len(), variables.len());
         let rates: Vec<String> = match version {
-            Version::Two => tag("Derivatives").iter().flat_map(|d| d.children()).filter_map(|u| u.attribute("index")).map(str::to_owned).collect(),
-            Version::Three => tag("ContinuousStateDerivative").iter().filter_map(|u| u.attribute("valueReference")).map(str::to_owned).collect(),
+            Version::Two => tag("Derivatives")
+                .iter()
+                .flat_map(|d| d.children())
+                .filter_map(|u| u.attribute("index"))
+                .map(str::to_owned)
+                .collect(),
+            Version::Three => tag("ContinuousStateDerivative")
+                .iter()
+                .filter_map(|u| u.attribute("valueReference"))
+                .map(str::to_owned)
+                .collect(),
         };
         // Two speeds and two angles are the motion of a set.
         assert_eq!(rates.len(), if interface == Interface::Both { 4 } else { 0 });
@@ -309,7 +322,9 @@ fn inputs_and_parameters_have_their_time() {
         assert_eq!(set(c, inertia, 2.0), ERROR, "a parameter is fixed from here on");
         assert_eq!(set(c, drive, 7.0), OK);
         assert_eq!(real(c, drive), 7.0);
-        for (time, length) in [(0.0, 0.0), (0.0, -1.0), (0.0, f64::NAN), (f64::NAN, 0.1), (0.5, 0.1), (0.0, f64::INFINITY)] {
+        for (time, length) in
+            [(0.0, 0.0), (0.0, -1.0), (0.0, f64::NAN), (f64::NAN, 0.1), (0.5, 0.1), (0.0, f64::INFINITY)]
+        {
             assert_eq!(fmi2DoStep(c, time, length, 1), ERROR, "{time} {length}");
         }
         steps(c, 0, 3);
@@ -447,14 +462,23 @@ fn a_host_that_integrates_gets_rates_and_derivatives() {
         // Twice the torque of the drive, by its derivative and at once: within the mode that is linear.
         let (drive, rate) = (unit.of("drive"), unit.of("der(state.motor.speed)"));
         let mut by = [0.0];
-        assert_eq!(fmi3GetDirectionalDerivative(c, &raw const rate, 1, &raw const drive, 1, &2.0, 1, by.as_mut_ptr(), 1), OK);
+        assert_eq!(
+            fmi3GetDirectionalDerivative(c, &raw const rate, 1, &raw const drive, 1, &2.0, 1, by.as_mut_ptr(), 1),
+            OK
+        );
         let mut again = vec![0.0; count];
         assert_eq!(fmi3GetContinuousStateDerivatives(c, again.as_mut_ptr(), count), OK);
         assert_eq!(rates, again, "nothing has changed by it");
         assert!(by[0].abs() > 1.0, "{by:?}");
         let wrong = [unit.of("verdict"), u32::MAX];
-        assert_eq!(fmi3GetDirectionalDerivative(c, wrong.as_ptr(), 1, &raw const drive, 1, &2.0, 1, by.as_mut_ptr(), 1), ERROR);
-        assert_eq!(fmi3GetDirectionalDerivative(c, wrong[1..].as_ptr(), 1, &raw const drive, 1, &2.0, 1, by.as_mut_ptr(), 1), ERROR);
+        assert_eq!(
+            fmi3GetDirectionalDerivative(c, wrong.as_ptr(), 1, &raw const drive, 1, &2.0, 1, by.as_mut_ptr(), 1),
+            ERROR
+        );
+        assert_eq!(
+            fmi3GetDirectionalDerivative(c, wrong[1..].as_ptr(), 1, &raw const drive, 1, &2.0, 1, by.as_mut_ptr(), 1),
+            ERROR
+        );
         states[0] = f64::INFINITY;
         assert_eq!(fmi3SetContinuousStates(c, states.as_ptr(), count), DISCARD);
         fmi3FreeInstance(c);

@@ -75,7 +75,7 @@ def difference(result, folder: Path, name: str) -> float:
         found = 0
         for t, value in zip(times, wanted):
             k = int(numpy.argmin(numpy.abs(grid - t)))
-            if abs(grid[k] - t) < 1e-12:
+            if abs(grid[k] - t) < 1e-10:
                 worst = max(worst, abs(result[quantity][k] - value) / size)
                 found += 1
         assert found > 20, f"{quantity}: {found} common times"
@@ -217,7 +217,8 @@ def coupled(units: dict[str, Path], wires, wanted, step: float, stop: float) -> 
     from libcosimpy.CosimObserver import CosimObserver
     from libcosimpy.CosimSlave import CosimLocalSlave
 
-    execution = CosimExecution.from_step_size(step_size=step)
+    # Times are in nanoseconds.
+    execution = CosimExecution.from_step_size(step_size=round(1e9 * step))
     index, references, slaves = {}, {}, []
     for name, unit in units.items():
         slaves.append(CosimLocalSlave(fmu_path=str(unit), instance_name=name))
@@ -233,7 +234,7 @@ def coupled(units: dict[str, Path], wires, wanted, step: float, stop: float) -> 
         )
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer=observer)
-    assert execution.simulate_until(target_time=stop)
+    assert execution.simulate_until(target_time=round(1e9 * stop))
     values = {}
     for name, variable in wanted:
         values[variable] = observer.last_real_values(

@@ -116,8 +116,9 @@ impl Simulation {
         if !(value.is_finite() && until.is_finite() && until > self.t) {
             return Err(InputRefused::NotFinite);
         }
-        let line = Signal::Ramp { offset: from, height: value - from, at: self.t, duration: until - self.t };
-        *self.engine.system.signal_of(input) = line;
+        // Its break is at that time to the last bit.
+        let points = vec![[self.t, from], [until, value]];
+        *self.engine.system.signal_of(input) = Signal::Table { points, hold: false };
         self.changed();
         Ok(())
     }
@@ -147,6 +148,7 @@ impl Simulation {
     /// Goes on to a time, s, as [`Simulation::advance`] does, also beyond the end of the scenario, whose inputs then go on
     /// as they ended.
     pub fn go_on(&mut self, until: f64) -> Option<Outcome> {
+        self.hosted = true;
         self.extend(until);
         let outcome = self.advance(until, &mut ());
         self.pause();
@@ -155,6 +157,7 @@ impl Simulation {
 
     /// The same up to the first change of mode, if there is one: the time reached tells.
     pub fn go_on_to_event(&mut self, until: f64) -> Option<Outcome> {
+        self.hosted = true;
         self.extend(until);
         let outcome = self.advance(until, &mut First { after: self.t });
         self.pause();
@@ -210,6 +213,9 @@ impl Simulation {
     /// Takes over a time, s, and the states there, of a program that integrates them itself.
     pub fn look_at(&mut self, time: f64, state: &[f64]) {
         let states = self.engine.states().min(state.len());
+        if time != self.t || self.x[..states] != state[..states] {
+            self.rested.0 = f64::NAN;
+        }
         self.t = time;
         self.x[..states].copy_from_slice(&state[..states]);
         (self.rolling, self.row_is_present) = (false, false);
@@ -292,6 +298,7 @@ impl Simulation {
         if let Some(outcome) = &self.outcome {
             return Err(outcome.clone());
         }
+        self.hosted = true;
         self.extend(self.t);
         if !matches!(self.why, Some(Why::Start)) {
             self.look_at_margins();

@@ -134,6 +134,9 @@ impl Simulation {
                 Signal::Ramp { offset, height, at, duration } => {
                     to.numbers([*offset, *height, *at, *duration].into_iter());
                 }
+                Signal::Table { points, hold: false } if points.len() == 2 => {
+                    to.numbers([points[0][0], points[0][1], points[1][0], points[1][1], 0.0].into_iter());
+                }
                 _ => to.numbers([].into_iter()),
             }
         }
@@ -141,6 +144,8 @@ impl Simulation {
         to.numbers(self.x.iter().copied());
         to.numbers(self.came_in.iter().copied());
         to.numbers(flags(&self.at_rest));
+        to.numbers(flags(&self.rested.1));
+        to.number(self.rested.0);
         to.numbers(self.labels.iter().map(|l| l.value()));
         to.numbers(self.recent.iter().copied());
         to.numbers(engine.mode.slip.iter().map(|x| f64::from(*x)));
@@ -183,6 +188,7 @@ impl Simulation {
                 [] => continue,
                 [x] => Signal::Constant(x),
                 [offset, height, at, duration] => Signal::Ramp { offset, height, at, duration },
+                [t0, y0, t1, y1, _] if t1 > t0 => Signal::Table { points: vec![[t0, y0], [t1, y1]], hold: false },
                 _ => return Err(NotSaved),
             };
             *new.engine.system.signal_of(input.input) = signal;
@@ -194,6 +200,9 @@ impl Simulation {
         fill(&mut new.x, &mut from)?;
         fill(&mut new.came_in, &mut from)?;
         new.at_rest = from.numbers(Some(new.at_rest.len()))?.iter().map(|x| *x != 0.0).collect();
+        new.rested.1 = from.numbers(Some(new.rested.1.len()))?.iter().map(|x| *x != 0.0).collect();
+        new.rested.0 = from.number()?;
+        new.hosted = true;
         let labels = from.numbers(None)?;
         new.labels = labels.iter().map(|x| ModeLabel::of_value(*x).ok_or(NotSaved)).collect::<Result<_, _>>()?;
         new.recent = from.numbers(None)?.into();
