@@ -233,14 +233,14 @@ impl Layout {
                 all.add(&format!("{}.rate", info.name), about, Role::InputRate(k), kind, Some(Value::Real(0.0)));
             }
         }
-        for (path, measure, start) in parameters(model) {
+        for (name, path, measure, start) in parameters(model, scenario) {
             let kind = match measure {
                 Measure::Quantity(dimension) => Kind::Real(Unit::of(dimension)),
                 Measure::Integer => Kind::Integer,
                 _ => Kind::Real(None),
             };
             let about = "Quantity of the train file, by its path";
-            all.add(&path.clone(), about, Role::Parameter(path), kind, Some(start));
+            all.add(&name, about, Role::Parameter(path), kind, Some(start));
         }
         let about = "Relative tolerance of every speed and angle in co-simulation";
         all.add("tolerance", about, Role::Tolerance, Kind::Real(None), Some(Value::Real(TOLERANCE)));
@@ -330,10 +330,11 @@ impl Names {
     }
 }
 
-/// The numbers of the train file: path, kind, value.
-fn parameters(model: &Model) -> Vec<(String, Measure, Value)> {
-    let document = model.document();
-    let number = |path: String, key: willis::train::Key| {
+/// The numbers of the train file, without those that are asked of it: name, path, kind, value. Speeds at the start of the
+/// scenario are among them.
+fn parameters(model: &Model, scenario: &str) -> Vec<(String, String, Measure, Value)> {
+    let (document, train) = (model.document(), model.train());
+    let number = |name: String, path: String, key: willis::train::Key| {
         let text = document.value(&key)?;
         let value = match key.measure {
             Measure::Quantity(dimension) => Value::Real(units::parse(&text, dimension).ok()?.si()),
@@ -341,9 +342,22 @@ fn parameters(model: &Model) -> Vec<(String, Measure, Value)> {
             Measure::Integer if path != "format" => Value::Integer(text.trim().parse().ok()?),
             _ => return None,
         };
-        Some((path, key.measure, value))
+        Some((name, path, key.measure, value))
     };
-    document.quantities().into_iter().filter_map(|(path, key)| number(path, key)).collect()
+    let of_operation = |path: &str| {
+        let begins = |name: &str| path.strip_prefix(name).is_some_and(|rest| rest.starts_with('.'));
+        begins("operation") || train.operations().iter().any(|o| begins(&o.name))
+    };
+    let all = document.quantities().into_iter().filter(|(path, _)| !of_operation(path));
+    let mut numbers: Vec<_> = all.filter_map(|(path, key)| number(path.clone(), path, key)).collect();
+    for &(member, _) in train.find_scenario(scenario).map_or(&[][..], |s| &s.initial_speeds) {
+        let name = format!("initial_speeds.{}", train.member_name(member));
+        let path = format!("scenario.{scenario}.{name}");
+        if let Ok(key) = document.find(&path) {
+            numbers.extend(number(name, path, key));
+        }
+    }
+    numbers
 }
 
 /// A value as the train file takes it.
