@@ -705,7 +705,11 @@ fn units_hold_a_library_that_is_named() {
     let all = ["export", "fmu", "examples/launch.toml", "--library", path(&library), "-o", path(&unit)];
     let output = run(&all);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
-    assert!(text(&output.stdout).contains("scenario `start and lift off`, FMI 2.0, 2 inputs"), "{}", text(&output.stdout));
+    assert!(
+        text(&output.stdout).contains("scenario `start and lift off`, FMI 2.0, 2 inputs"),
+        "{}",
+        text(&output.stdout)
+    );
     assert!(std::fs::read(&unit).expect("a file").starts_with(b"PK"));
     assert!(refused(&run(&all), 1).contains("--force replaces it"));
     let three = run(&[&all[..], &["--fmi", "3", "--kind", "me", "--force"]].concat());
@@ -713,7 +717,8 @@ fn units_hold_a_library_that_is_named() {
     let missing = [&all[..4], &["nowhere.so", "-o", path(&folder.join("x.fmu"))]].concat();
     assert!(refused(&run(&missing), 1).contains("nowhere.so"));
     assert!(refused(&run(&all[..3]), 1).contains("name a file with -o"));
-    let still = ["export", "fmu", "examples/zf-8hp70.toml", "--library", path(&library), "-o", path(&folder.join("y.fmu"))];
+    let still =
+        ["export", "fmu", "examples/zf-8hp70.toml", "--library", path(&library), "-o", path(&folder.join("y.fmu"))];
     assert!(refused(&run(&still), 1).contains("no scenario"));
     let several = [&["export", "fmu", "examples/shift-8hp70.toml"], &still[3..]].concat();
     assert!(refused(&run(&several), 1).contains("name one of them"));

@@ -26,7 +26,7 @@ const PHASES: [Phase; 6] =
 
 impl Instance {
     /// The whole state as bytes.
-    pub fn to_bytes(&mut self) -> Vec<u8> {
+    pub fn bytes(&mut self) -> Vec<u8> {
         let phase = PHASES.iter().position(|p| *p == self.phase).unwrap_or_default();
         let mut head = Head {
             token: self.token.to_string(),

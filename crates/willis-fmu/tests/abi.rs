@@ -205,7 +205,16 @@ fn descriptions_point_to_what_they_mean() {
             let first = usize::from(version == Version::Two);
             assert_eq!(v.attribute("valueReference").unwrap(), (k + first).to_string());
         }
-        for name in ["P1.sun.teeth", "initial_speeds.drum", "drive", "engagement.B", "drum.speed", "B.mode", "P1.sun-planet.loss", "verdict"] {
+        for name in [
+            "P1.sun.teeth",
+            "initial_speeds.drum",
+            "drive",
+            "engagement.B",
+            "drum.speed",
+            "B.mode",
+            "P1.sun-planet.loss",
+            "verdict",
+        ] {
             assert!(names.contains(&name), "{name} is not among {names:?}");
         }
         names.sort_unstable();

@@ -90,8 +90,7 @@ def test_fmpy_validates_and_runs(folder, fmi, kind, name):
     unit = export(folder, train, scenario, fmi, kind)
     assert validate_fmu(str(unit)) == []
     times, _ = simulated(folder, train, scenario)
-    start, stop = times[0], times[-1]
-    interval = (stop - start) / 200
+    interval = float(numpy.median(numpy.diff(times)))
     more = {"relative_tolerance": 1e-10} if kind == "me" else {}
     result = fmpy.simulate_fmu(str(unit), output_interval=interval, output=names, record_events=False, **more)
     worst = difference(result, folder, name)
@@ -102,11 +101,13 @@ def test_fmpy_validates_and_runs(folder, fmi, kind, name):
 def test_steps_end_early_at_events(folder):
     train, scenario, names = CASES["winch"]
     unit = export(folder, train, scenario, "3", "cs")
+    times, _ = simulated(folder, train, scenario)
+    interval = float(numpy.median(numpy.diff(times)))
     result = fmpy.simulate_fmu(
-        str(unit), output_interval=0.05, output=[*names, "event_count"], early_return_allowed=True, use_event_mode=True
+        str(unit), output_interval=interval, output=[*names, "event_count"], early_return_allowed=True, use_event_mode=True
     )
-    assert len(result) > 45, "events have rows of their own"
-    assert difference(result[numpy.isclose(result["time"] * 20, numpy.round(result["time"] * 20))], folder, "winch") < 1e-6
+    assert len(result) > round(2.0 / interval) + 1, "events have rows of their own"
+    assert difference(result, folder, "winch") < 1e-6
 
 
 def test_parameters_are_those_of_the_file(folder):
@@ -214,9 +215,11 @@ def libcosim():
 def coupled(units: dict[str, Path], wires, wanted, step: float, stop: float) -> dict[str, float]:
     """Units side by side in libcosim, and what is wanted of them at the end."""
     from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimObserver import CosimObserver
     from libcosimpy.CosimSlave import CosimLocalSlave
 
+    log_output_level(CosimLogLevel.WARNING)
     # Times are in nanoseconds.
     execution = CosimExecution.from_step_size(step_size=round(1e9 * step))
     index, references, slaves = {}, {}, []
@@ -226,12 +229,13 @@ def coupled(units: dict[str, Path], wires, wanted, step: float, stop: float) -> 
         variables = fmpy.read_model_description(str(unit)).modelVariables
         references[name] = {v.name: v.valueReference for v in variables}
     for (a, out), (b, into) in wires:
-        assert execution.connect_real_variables(
-            source_slave_index=index[a],
-            source_variable_ref=references[a][out],
-            target_slave_index=index[b],
-            target_variable_ref=references[b][into],
+        wired = execution.connect_real_variables(
+            output_slave_index=index[a],
+            output_variable_reference=references[a][out],
+            input_slave_index=index[b],
+            input_variable_reference=references[b][into],
         )
+        assert wired == 0
     observer = CosimObserver.create_last_value()
     execution.add_observer(observer=observer)
     assert execution.simulate_until(target_time=round(1e9 * stop))

@@ -142,7 +142,7 @@ pub extern "C" fn fmi3EnterInitializationMode(
     stop: f64,
 ) -> c_int {
     with(c, |c| {
-        if has_stop != 0 && !(stop >= start) {
+        if has_stop != 0 && (stop < start || stop.is_nan()) {
             return Err(error(format!("an experiment from {start} s to {stop} s is none")));
         }
         c.instance.enter_initialization(start, (has_tolerance != 0).then_some(tolerance))

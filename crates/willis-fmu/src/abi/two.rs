@@ -137,7 +137,7 @@ pub extern "C" fn fmi2SetupExperiment(
 ) -> c_int {
     with(c, |c| {
         c.instance.expect("the setup of an experiment", &[Phase::Instantiated])?;
-        if !start.is_finite() || has_stop != 0 && !(stop >= start) {
+        if !start.is_finite() || has_stop != 0 && (stop < start || stop.is_nan()) {
             return Err(error(format!("an experiment from {start} s to {stop} s is none")));
         }
         c.set_up = Some((start, (has_tolerance != 0).then_some(tolerance)));
@@ -311,7 +311,7 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(c: Handle, state: *mut Handle) -> c_in
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Handle, state: Handle, size: *mut usize) -> c_int {
     with(c, |_| {
-        let bytes = Instance::clone(&*kept(state)?).to_bytes();
+        let bytes = Instance::clone(&*kept(state)?).bytes();
         // SAFETY: a place for one number.
         unsafe { put(size, bytes.len(), "the size") }
     })
@@ -320,7 +320,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Handle, state: Handle, si
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(c: Handle, state: Handle, to: *mut u8, size: usize) -> c_int {
     with(c, |_| {
-        let bytes = Instance::clone(&*kept(state)?).to_bytes();
+        let bytes = Instance::clone(&*kept(state)?).bytes();
         if size < bytes.len() {
             return Err(error(format!("a state takes {} bytes, and there is room for {size}", bytes.len())));
         }

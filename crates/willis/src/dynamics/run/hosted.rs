@@ -81,7 +81,7 @@ impl Simulation {
     /// let motor = run.input("motor")?;
     /// let mut run = run.again_with(&[(motor, 6.0)])?;
     /// // Another program integrates.
-    /// run.settle()?;
+    /// run.settle().unwrap();
     /// let (mut state, mut rates) = (run.state().to_vec(), vec![0.0; 2]);
     /// for k in 0..1000 {
     ///     run.look_at(1e-3 * f64::from(k), &state);
