@@ -145,6 +145,7 @@ fn of(entry: &Entry) -> Command {
         c = c.arg(Arg::new("yes").long("yes").action(ArgAction::SetTrue).help(help));
     }
     match entry.name {
+        "export" => crate::fmu::options(c),
         "sweep" => crate::sweep::options(c),
         "report" => crate::pdf::options(c),
         _ => c,

@@ -4,6 +4,7 @@
 //! A library, so that the Python package has the same command and reads the same files.
 
 mod command;
+mod fmu;
 mod form;
 pub mod input;
 mod interrupt;
@@ -105,6 +106,8 @@ fn run(name: &str, own: &ArgMatches) -> Result<Ended, Ended> {
     }
     let entry = willis_ask::question(name).expect("clap knows the commands");
     match (name, own.try_get_one::<std::path::PathBuf>("output").ok().flatten()) {
+        ("export", _) if fmu::is_asked(own) => fmu::run(entry, own),
+        ("export", _) => fmu::beside(own, || run::run(entry, own)),
         ("sweep", _) => sweep::run(entry, own),
         ("simulate", Some(out)) if simulate::streams(out) => simulate::run(entry, own, out),
         _ => run::run(entry, own),

@@ -698,6 +698,35 @@ fn regress_export_csv() {
 }
 
 #[test]
+fn units_hold_a_library_that_is_named() {
+    let folder = folder("fmu");
+    let (library, unit) = (folder.join("library.so"), folder.join("launch.fmu"));
+    let other = folder.join("other.fmu");
+    std::fs::write(&library, "not a library, but bytes").expect("written");
+    let all = ["export", "fmu", "examples/launch.toml", "--library", path(&library), "-o", path(&unit)];
+    let output = run(&all);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(
+        text(&output.stdout).contains("scenario `start and lift off`, FMI 2.0, 2 inputs"),
+        "{}",
+        text(&output.stdout)
+    );
+    assert!(std::fs::read(&unit).expect("a file").starts_with(b"PK"));
+    assert!(refused(&run(&all), 1).contains("--force replaces it"));
+    let three = run(&[&all[..], &["--fmi", "3", "--kind", "me", "--force"]].concat());
+    assert!(text(&three.stdout).contains("FMI 3.0"), "{}", text(&three.stdout));
+    let missing = [&all[..4], &["nowhere.so", "-o", path(&other)]].concat();
+    assert!(refused(&run(&missing), 1).contains("nowhere.so"));
+    assert!(refused(&run(&all[..3]), 1).contains("name a file with -o"));
+    let still = ["export", "fmu", "examples/zf-8hp70.toml", "--library", path(&library), "-o", path(&other)];
+    assert!(refused(&run(&still), 1).contains("no scenario"));
+    let several = [&["export", "fmu", "examples/shift-8hp70.toml"], &still[3..]].concat();
+    assert!(refused(&run(&several), 1).contains("name one of them"));
+    refused(&run(&["export", "csv", "examples/zf-8hp70.toml", "--fmi", "2"]), 2);
+    refused(&run(&[&all[..], &["--speeds", "1000rpm"]].concat()), 2);
+}
+
+#[test]
 fn exports_are_whole_and_do_not_overwrite() {
     let folder = folder("export");
     let gears = folder.join("gears");

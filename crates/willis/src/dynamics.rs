@@ -56,5 +56,5 @@ pub use report::{
     Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind,
     LimitExceeded, Method, ModeLabel, MotionHeat, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
 };
-pub use run::Simulation;
+pub use run::{LossCause, NotSaved, Simulation, StateInfo};
 pub use simulate::simulate;

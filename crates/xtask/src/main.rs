@@ -7,6 +7,7 @@ mod bench;
 mod book;
 mod context;
 mod examples;
+mod fmu;
 mod fuzz;
 mod generate;
 mod licences;
@@ -69,6 +70,9 @@ const STEPS: &[Step] = &[
     Step::new("python", "the Python package: wheel, tests, types, notebooks", Action::Call(python::python))
         .may_skip()
         .ahead(python::builds),
+    Step::new("fmu", "units of the program run in simulators that others wrote", Action::Call(fmu::fmu))
+        .may_skip()
+        .ahead(fmu::builds),
     Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)).ahead(pdf::builds),
 ];
 

@@ -6,7 +6,7 @@ use crate::context::Context;
 
 /// Builds the optimised program, and with it the Python package: alone each has other features of the same dependencies, so that
 /// everything above them would be compiled twice.
-pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli -p willis-py";
+pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli -p willis-py -p willis-fmu";
 
 /// What can be built before it is needed.
 pub(crate) fn builds(context: &Context) -> Vec<Command> {

@@ -30,9 +30,11 @@ pub(super) struct Meshing {
 impl Engine {
     /// Number of energies that are integrated: of sources and stores, frictions, shafts, meshes, variators.
     pub fn energies(&self) -> usize {
-        if !self.counts {
-            return 0;
-        }
+        if self.counts { self.powers_count() } else { 0 }
+    }
+
+    /// Number of powers that are told apart, whether their energies are counted or not.
+    pub fn powers_count(&self) -> usize {
         let s = &self.system;
         s.accounts() + s.frictions.len() + s.elastic.len() + s.train.meshes().len() + s.paths.len()
     }
@@ -220,6 +222,36 @@ impl Engine {
         0.5 * kinetic + twisted + self.path_energy(x)
     }
 
+    /// What loses, by cause: name, kind, and which of the energies are its own.
+    pub fn causes(&self) -> Vec<(String, EnergyLossKind, Vec<usize>)> {
+        let s = &self.system;
+        let mut causes: Vec<(String, EnergyLossKind, Vec<usize>)> = Vec::new();
+        let mut at = s.accounts();
+        for (k, f) in s.frictions.iter().enumerate() {
+            let Some(kind) = s.loss_kind(k).filter(|_| !f.open) else { continue };
+            match causes.last_mut().filter(|_| f.what == Rubs::Trace && s.frictions[k - 1].what == Rubs::Trace) {
+                // They are told together.
+                Some((_, _, energies)) => energies.push(at + k),
+                None => causes.push((f.name.clone(), kind, vec![at + k])),
+            }
+        }
+        at += s.frictions.len();
+        for (k, shaft) in s.train.shafts().iter().enumerate() {
+            if shaft.damping > 0.0 || shaft.backlash > 0.0 {
+                causes.push((shaft.name.clone(), EnergyLossKind::Shaft, vec![at + k]));
+            }
+        }
+        at += s.elastic.len();
+        for (k, mesh) in s.train.meshes().iter().enumerate() {
+            causes.push((mesh.name.clone(), EnergyLossKind::Mesh, vec![at + k]));
+        }
+        at += s.train.meshes().len();
+        for (k, path) in s.paths.iter().enumerate() {
+            causes.push((s.train.variators[path.variator].name.clone(), EnergyLossKind::Variator, vec![at + k]));
+        }
+        causes
+    }
+
     /// The report at the end of a run: `stored` at the start and at the end, the energies, and of those of the
     /// sources what came in. None if they were not counted or are no longer finite.
     pub fn energy_report(&self, stored: [f64; 2], energies: &[f64], came_in: &[f64]) -> Option<EnergyReport> {
@@ -227,7 +259,6 @@ impl Engine {
             return None;
         }
         let s = &self.system;
-        let n = s.accounts();
         let account = |k: usize, name: &str, of: &str| SourceEnergy {
             name: name.to_owned(),
             member: of.to_owned(),
@@ -244,35 +275,12 @@ impl Engine {
             let name = &s.train.variators[path.variator].name;
             sources.push(account(s.drivers.len() + k, &format!("store of {name}"), name));
         }
-        let mut losses = Vec::new();
-        let mut at = n;
-        for (k, f) in s.frictions.iter().enumerate() {
-            let Some(kind) = s.loss_kind(k).filter(|_| !f.open) else { continue };
-            match losses.last_mut().filter(|_| f.what == Rubs::Trace && s.frictions[k - 1].what == Rubs::Trace) {
-                // They are told together.
-                Some(EnergyLoss { energy_j, .. }) => *energy_j += energies[at + k],
-                None => losses.push(EnergyLoss { name: f.name.clone(), kind, energy_j: energies[at + k] }),
-            }
-        }
-        at += s.frictions.len();
-        for (k, shaft) in s.train.shafts().iter().enumerate() {
-            if shaft.damping > 0.0 || shaft.backlash > 0.0 {
-                losses.push(EnergyLoss {
-                    name: shaft.name.clone(),
-                    kind: EnergyLossKind::Shaft,
-                    energy_j: energies[at + k],
-                });
-            }
-        }
-        at += s.elastic.len();
-        for (k, mesh) in s.train.meshes().iter().enumerate() {
-            losses.push(EnergyLoss { name: mesh.name.clone(), kind: EnergyLossKind::Mesh, energy_j: energies[at + k] });
-        }
-        at += s.train.meshes().len();
-        for (k, path) in s.paths.iter().enumerate() {
-            let name = s.train.variators[path.variator].name.clone();
-            losses.push(EnergyLoss { name, kind: EnergyLossKind::Variator, energy_j: energies[at + k] });
-        }
+        let summed = |(name, kind, of): (String, EnergyLossKind, Vec<usize>)| EnergyLoss {
+            name,
+            kind,
+            energy_j: of.iter().map(|&k| energies[k]).sum(),
+        };
+        let mut losses: Vec<EnergyLoss> = self.causes().into_iter().map(summed).collect();
         losses.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));
         let stored_j = stored[1] - stored[0];
         let lost: f64 = losses.iter().map(|l| l.energy_j).sum();

@@ -153,12 +153,17 @@ impl System {
         if !value.is_finite() {
             return Err(InputRefused::NotFinite);
         }
+        *self.signal_of(input) = Signal::Constant(value);
+        Ok(())
+    }
+
+    /// The signal that an input replaces.
+    pub fn signal_of(&mut self, input: Input) -> &mut Signal {
         let signal = match input.0 {
             Sets::Source(k) => signal(&mut self.scenario.sources[k].kind).map(|(_, signal)| signal),
             Sets::Engagement(k) => Some(&mut self.scenario.engagements[k].signal),
         };
-        *signal.expect("an input has a signal") = Signal::Constant(value);
-        Ok(())
+        signal.expect("an input has a signal")
     }
 
     /// The speed that an input prescribes, as a position among the prescribed ones.

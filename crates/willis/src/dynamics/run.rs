@@ -1,7 +1,9 @@
 //! From start to end: smooth motion, changes of mode, rows and events.
 
+mod hosted;
 mod locate;
 mod pace;
+mod saved;
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -22,6 +24,9 @@ use super::stretch::Watch;
 use super::system::System;
 use super::window::Window;
 use pace::Pace;
+
+pub use hosted::{LossCause, StateInfo};
+pub use saved::NotSaved;
 
 /// How often in a run what a formula does to a held element is looked at, at least.
 const LOOKS: f64 = 1000.0;
@@ -81,6 +86,10 @@ pub struct Simulation {
     /// The longest step that sees what the signals do.
     longest: f64,
     at_rest: Vec<bool>,
+    /// In the hands of another program: what was at rest where the mode was chosen last, and when that was. A choice that is
+    /// made once more at the same state is then the same.
+    hosted: bool,
+    rested: (f64, Vec<bool>),
     pub(super) labels: Vec<ModeLabel>,
     /// Why the mode is chosen anew.
     why: Option<Why>,
@@ -204,6 +213,8 @@ impl Simulation {
             from,
             longest: f64::INFINITY,
             at_rest: vec![false; groups],
+            hosted: false,
+            rested: (f64::NAN, vec![false; groups]),
             labels: vec![],
             why: Some(Why::Start),
             told: String::new(),
@@ -402,6 +413,9 @@ impl Simulation {
         for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest(within)) {
             *rest |= now;
         }
+        if self.hosted && self.rested.0 == self.t {
+            self.at_rest.iter_mut().zip(&self.rested.1).for_each(|(rest, before)| *rest |= before);
+        }
         let known = AS_WRITTEN.max(10.0 * self.options.tolerance);
         self.engine.rest_where_joined(self.t, known, &mut self.at_rest);
         self.engine.bring_to_rest(&mut x, &mut self.at_rest);
@@ -412,6 +426,10 @@ impl Simulation {
         }
         self.engine.still = None;
         let at_rest = std::mem::take(&mut self.at_rest);
+        if self.hosted {
+            self.rested.0 = self.t;
+            self.rested.1.clone_from(&at_rest);
+        }
         let mut guess = self.engine.mode.clone();
         for (slip, rest) in guess.slip.iter_mut().zip(&at_rest) {
             if *rest {

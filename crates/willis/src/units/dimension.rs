@@ -81,6 +81,17 @@ impl Dimension {
         self.kind().map_or(&[], |k| k.units)
     }
 
+    /// Exponents of metre, kilogram, second, radian and kelvin.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::units::Dimension;
+    /// assert_eq!(Dimension::TORQUE.exponents(), [2, 1, -2, 0, 0]);
+    /// ```
+    pub fn exponents(self) -> [i8; 5] {
+        self.0
+    }
+
     pub(super) fn kind(self) -> Option<&'static Kind> {
         KINDS.iter().find(|k| k.dimension == self)
     }

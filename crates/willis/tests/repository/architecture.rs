@@ -114,7 +114,16 @@ fn imports(module: &str, code: &str, all: &[String]) -> Vec<String> {
 #[test]
 fn files_import_in_no_circle() {
     let mut modules: Vec<(String, String)> = Vec::new();
-    for of in ["willis", "willis-figure", "willis-casebook", "willis-synthesis", "willis-ask", "willis-cli", "xtask"] {
+    for of in [
+        "willis",
+        "willis-figure",
+        "willis-casebook",
+        "willis-synthesis",
+        "willis-ask",
+        "willis-fmu",
+        "willis-cli",
+        "xtask",
+    ] {
         let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(of).join("src");
         for file in rust_files(&src).into_iter().filter(|file| file.extension().is_some_and(|e| e == "rs")) {
             let path = file.strip_prefix(&src).unwrap().with_extension("");
