@@ -24,7 +24,8 @@ pub fn read(text: &str) -> Result<Document, String> {
     };
     for (k, relation) in list(model, "relations").enumerate() {
         budget.entry()?;
-        let mut read = Relation { id: number(relation, "id").unwrap_or_default(), kind: word(relation, "type"), refs: vec![] };
+        let mut read =
+            Relation { id: number(relation, "id").unwrap_or_default(), kind: word(relation, "type"), refs: vec![] };
         for part in list(relation, "refs") {
             match number(part, "id") {
                 Some(id) => read.refs.push((word(part, "role"), id)),

@@ -22,7 +22,7 @@
 //!     carrier = "carrier"
 //!     geometry = { module = "4 mm", width = "50 mm" }
 //! "#)?;
-//! let file = rexs::write(model.train()).text;
+//! let file = rexs::write(model.train())?.text;
 //! assert!(file.contains(r#"version="1.6""#));
 //! let read = rexs::read("reducer.rexs", file.as_bytes())?;
 //! assert_eq!(read.model.train().meshes().len(), 2);

@@ -14,21 +14,21 @@ mod gears;
 mod loads;
 mod sets;
 mod supports;
-//WRITE mod write;
+mod write;
 
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, printable};
 use willis::model::Model;
 
-use crate::account::{Account, Fate};
+use crate::account::Account;
 use crate::document::{Document, MOST_MIB, Value};
-use crate::text::{comment, quoted};
+use crate::text::{comment, quantity, quoted};
 use crate::{json, xml, zip};
 
-pub use crate::account::{AttributeReport, Guess, Problem};
+pub use crate::account::{AttributeReport, Fate, Guess, Problem};
 pub use loads::{Column, LoadCaseReport};
 pub use supports::BearingReport;
-//WRITE pub use write::{Written, write};
+pub use write::{Written, write, written};
 
 /// The newest version that is read, and the one that is written.
 pub const VERSION: &str = "1.6";
@@ -174,8 +174,15 @@ fn open(bytes: &[u8]) -> Result<Document, String> {
 /// Texts that programs write, whatever component has them; `false` stands for each of them in files of a faulty writer.
 fn is_text_or_vector(id: &str) -> bool {
     const PARTS: &[&str] = &[
-        "determination_of", "designation", "type_of", "_type", "tolerance_series", "shape_of", "_orientation",
-        "_force_absorption", "_evaluation_reference",
+        "determination_of",
+        "designation",
+        "type_of",
+        "_type",
+        "tolerance_series",
+        "shape_of",
+        "_orientation",
+        "_force_absorption",
+        "_evaluation_reference",
     ];
     // What is called so and is a truth value.
     let is_flag = id.starts_with("is_") || id == "radial_force_absorption";
@@ -191,7 +198,8 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
         account.problem("the model", format!("its version is {told}; read as one of 1.0 to {VERSION}"));
     }
     let scopes = document.cases.iter().flat_map(|c| &c.components).chain(&document.components);
-    let false_texts = scopes.flat_map(|c| &c.attributes).filter(|a| a.value == Value::Flag(false) && is_text_or_vector(&a.id));
+    let false_texts =
+        scopes.flat_map(|c| &c.attributes).filter(|a| a.value == Value::Flag(false) && is_text_or_vector(&a.id));
     let false_texts = false_texts.count();
     if false_texts > 0 {
         let message = format!("{false_texts} texts and vectors are stored as boolean false and cannot be used");
@@ -242,6 +250,10 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
     );
     if let Some(oil) = &oil {
         head.push_str(&format!("\n[oil]\n{}\n", oil.join("\n")));
+        match loads::temperature(&mut account) {
+            Some(t) => head.push_str(&format!("temperature = {}\n", quantity(t, "degC"))),
+            None => account.guess("temperature of the oil", "60 degC", "the file does not give it"),
+        }
     }
     let body = format!("{}{shifting}{bearings}", written.toml);
     let (bare, body) = settled(&mut account, &head, body, &bearings)?;
@@ -275,18 +287,20 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
 }
 
 /// The train without operations: as it is, or without what the file says of it and cannot be.
-fn settled(account: &mut Account<'_>, head: &str, body: String, bearings: &str) -> Result<(Model, String), Diagnostics> {
+fn settled(
+    account: &mut Account<'_>,
+    head: &str,
+    body: String,
+    bearings: &str,
+) -> Result<(Model, String), Diagnostics> {
     let wrong = match Model::from_toml(&format!("{head}{body}")) {
         Ok(model) => return Ok((model, body)),
         Err(wrong) => wrong,
     };
     // First without bearings, then without the forms of teeth.
     let without_bearings = body.replace(bearings, "");
-    let plain: String = body
-        .lines()
-        .filter(|line| !line.starts_with("geometry = "))
-        .map(|line| format!("{line}\n"))
-        .collect();
+    let plain: String =
+        body.lines().filter(|line| !line.starts_with("geometry = ")).map(|line| format!("{line}\n")).collect();
     for (what, text) in [("the bearings", without_bearings), ("the geometry of the teeth", plain)] {
         if let Ok(model) = Model::from_toml(&format!("{head}{text}")) {
             for d in wrong.iter().take(20) {

@@ -30,7 +30,8 @@ pub fn unpack(bytes: &[u8], endings: &[&str], most: usize) -> Result<(String, Ve
     };
     // The end record is 22 bytes and a comment of up to 65535.
     let first = bytes.len().saturating_sub(22 + 0xffff);
-    let end = (first..bytes.len().saturating_sub(21)).rev().find(|&k| bytes[k..].starts_with(END)).ok_or_else(broken)?;
+    let end =
+        (first..bytes.len().saturating_sub(21)).rev().find(|&k| bytes[k..].starts_with(END)).ok_or_else(broken)?;
     let count = word(end + 10, 2).ok_or_else(broken)?;
     let mut at = word(end + 16, 4).ok_or_else(broken)?;
     for _ in 0..count.min(MOST_ENTRIES) {

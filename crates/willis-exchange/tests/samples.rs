@@ -11,7 +11,8 @@ use willis_exchange::rexs;
 fn val_files_of_others_become_the_trains_they_describe() {
     let Some(folder) = std::env::var_os("WILLIS_REXS") else { return };
     let folder = Path::new(&folder);
-    let expected: Value = serde_json::from_str(&std::fs::read_to_string(folder.join("expected.json")).unwrap()).unwrap();
+    let expected: Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("expected.json")).unwrap()).unwrap();
     for (name, wanted) in expected.as_object().unwrap() {
         let read = rexs::read(name, &std::fs::read(folder.join(name)).unwrap());
         if let Some(why) = wanted["refused"].as_str() {
@@ -25,6 +26,13 @@ fn val_files_of_others_become_the_trains_they_describe() {
         }
         let train = read.model.train();
         let analysis = analyze(train, &Selection::default()).unwrap();
-        println!("{name}: {:?}", analysis.operations.iter().map(|o| (&o.name, o.verdict, o.solutions.first().map(|s| s.efficiency))).collect::<Vec<_>>());
+        println!(
+            "{name}: {:?}",
+            analysis
+                .operations
+                .iter()
+                .map(|o| (&o.name, o.verdict, o.solutions.first().map(|s| s.efficiency)))
+                .collect::<Vec<_>>()
+        );
     }
 }

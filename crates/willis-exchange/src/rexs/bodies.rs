@@ -111,7 +111,8 @@ impl Bodies {
                 Some(all) if all.len() == self.gears => all,
                 Some(all) if all.len() == 1 => vec![all[0]; self.gears],
                 Some(all) => {
-                    let message = format!("is_engaged has {} values for {} gears; it is left out", all.len(), self.gears);
+                    let message =
+                        format!("is_engaged has {} values for {} gears; it is left out", all.len(), self.gears);
                     account.problem(account.called(At::model(coupling)), message);
                     continue;
                 }
@@ -135,7 +136,7 @@ impl Bodies {
             }
             let c = &components[coupling];
             let taken = &mut self.couplings.iter().map(|c: &Coupling| c.name.clone()).collect();
-            let name = text::name(without_number(&c.name, c.id), &format!("coupling {}", c.id), taken);
+            let name = text::name(without_number(&c.name), &format!("coupling {}", c.id), taken);
             self.couplings.push(Coupling { name, bodies, engaged });
         }
     }
@@ -176,11 +177,6 @@ impl Bodies {
         self.by_id.get(id).copied()
     }
 
-    /// The component of a number.
-    pub fn by_id(&self, id: i64) -> Option<usize> {
-        self.by_id.get(&id).copied()
-    }
-
     /// Where a shaft is fixed in the body: the first of its components of that type.
     pub fn first(&self, account: &Account<'_>, root: usize, kind: &str) -> Option<usize> {
         let components = &account.document.components;
@@ -197,13 +193,20 @@ impl Bodies {
         }
         let best = ["planet_carrier", "shaft"].iter().find_map(|kind| self.first(account, root, kind));
         let c = &account.document.components[best.unwrap_or(root)];
-        let name = text::name(without_number(&c.name, c.id), &format!("{} {}", c.kind, c.id), &mut self.taken);
+        let name = text::name(without_number(&c.name), &format!("{} {}", c.kind, c.id), &mut self.taken);
         self.names.insert(root, name.clone());
         name
     }
 }
 
 /// A name without the number in brackets that some programs write behind it.
-pub fn without_number(name: &str, id: i64) -> &str {
-    name.trim().strip_suffix(&format!("[{id}]")).unwrap_or(name).trim()
+pub fn without_number(name: &str) -> &str {
+    let name = name.trim();
+    let number = name.strip_suffix(']').and_then(|rest| rest.rsplit_once('['));
+    match number {
+        Some((before, n)) if !before.trim().is_empty() && !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()) => {
+            before.trim()
+        }
+        _ => name,
+    }
 }

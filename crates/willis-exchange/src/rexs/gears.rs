@@ -256,7 +256,7 @@ impl Gearing {
             if wrong.is_empty() {
                 break;
             }
-            wrong.iter().for_each(|k| drop(mate.remove(k)));
+            mate.retain(|k, _| !wrong.contains(k));
         }
         let joined: Vec<[usize; 2]> = mate.iter().filter(|(k, m)| k < m).map(|(k, m)| [*k, *m]).collect();
         for [first, second] in joined {
@@ -416,7 +416,8 @@ impl Reader<'_> {
             account.guess(format!("roughness Ra of {}", account.called(at)), format!("{ra} um"), "Rz over 6");
             Some(ra)
         });
-        let places: Vec<At> = self.flanks.get(&component).into_iter().flatten().map(|k| At::model(*k)).chain([at]).collect();
+        let places: Vec<At> =
+            self.flanks.get(&component).into_iter().flatten().map(|k| At::model(*k)).chain([at]).collect();
         let mut of_flanks = |id: &str, is: Is, what: &str| -> Option<f64> {
             let all: Vec<f64> = places.iter().filter_map(|at| account.number(*at, id, is, what)).collect();
             let first = *all.first()?;

@@ -66,7 +66,8 @@ impl Loads {
             let at = At::model(component);
             let body = bodies.root(component);
             let transmits = account.flag(at, "transmits_torque", "terminals");
-            let gives = |id: &str| (0..=cases).any(|case| find(account, case, component).is_some_and(|at| account.has(at, id)));
+            let gives =
+                |id: &str| (0..=cases).any(|case| find(account, case, component).is_some_and(|at| account.has(at, id)));
             if !transmits.unwrap_or_else(|| gives("torque_around_u_axis") || gives("power")) {
                 continue;
             }
@@ -78,7 +79,8 @@ impl Loads {
                 continue;
             };
             if loads.torques.iter().any(|l| l.body == body) {
-                account.problem(account.called(at), "a second load on the same shaft; its torque is added to the first");
+                account
+                    .problem(account.called(at), "a second load on the same shaft; its torque is added to the first");
             } else {
                 loads.terminals.push(member.clone());
             }
@@ -102,7 +104,11 @@ impl Loads {
                 }
             }
             let taken = loads.terminals.join(", ");
-            account.guess("terminals", taken, "the file has less than two loads that transmit torque: shafts with one gear");
+            account.guess(
+                "terminals",
+                taken,
+                "the file has less than two loads that transmit torque: shafts with one gear",
+            );
         }
         loads
     }
@@ -118,13 +124,7 @@ impl Loads {
         let mut out = String::new();
         let mut reports = vec![];
         let cases = account.document.cases.len();
-        let temperature = |account: &mut Account<'_>, case: usize| {
-            let housing = components_of(account, "gear_casing");
-            let found = housing.into_iter().filter_map(|k| find(account, case, k));
-            let found: Vec<At> = found.collect();
-            found.into_iter().find_map(|at| account.number(at, "temperature_lubricant", Is::Temperature, "temperature"))
-        };
-        let base = temperature(account, 0);
+        let base = temperature(account);
         for case in if cases == 0 { 0..=0 } else { 1..=cases } {
             let id = (case > 0).then(|| account.document.cases[case - 1].id);
             let unit = components_of(account, "gear_unit").first().copied();
@@ -135,7 +135,10 @@ impl Loads {
             let name = match (id, share) {
                 (None, _) => "of the file".to_owned(),
                 (Some(id), None) => format!("load case {id}"),
-                (Some(id), Some(s)) => format!("load case {id} ({} % of the time)", plain(crate::account::rounded(s * 100.0))).replace('.', ","),
+                (Some(id), Some(s)) => {
+                    format!("load case {id} ({} % of the time)", plain(crate::account::rounded(s * 100.0)))
+                        .replace('.', ",")
+                }
             };
             let name = if reports.iter().any(|r: &LoadCaseReport| r.operation.as_ref() == Some(&name)) {
                 format!("{name}, number {case}")
@@ -166,9 +169,11 @@ impl Loads {
                         out.push_str(&format!("state = {}\n", quoted(&train.states()[state].name)));
                     }
                     out.push_str(&lines);
-                    let own = if case > 0 { temperature(account, case) } else { None };
-                    if let Some(t) = own.or(base) {
-                        out.push_str(&format!("temperature = {}\n", quantity(t, "degC")));
+                    let own = temperature_in(account, case).or(base);
+                    if let Some(t) = own {
+                        if own != base {
+                            out.push_str(&format!("temperature = {}\n", quantity(t, "degC")));
+                        }
                         report.columns.push(Column { name: "oil.temperature [degC]".into(), value: t });
                     }
                     report.operation = Some(name);
@@ -201,14 +206,16 @@ impl Loads {
         let mut speeds: Vec<(bool, MemberId, String, f64)> = vec![];
         for source in &self.speeds {
             let found: Vec<At> = scopes.iter().filter_map(|c| find(account, *c, source.component)).collect();
-            let speed = found.iter().find_map(|at| account.number(*at, "rotational_speed", Is::Speed, "operation.speeds"));
+            let speed =
+                found.iter().find_map(|at| account.number(*at, "rotational_speed", Is::Speed, "operation.speeds"));
             let Some(speed) = speed else { continue };
             let defines = found.iter().find_map(|at| account.flag(*at, "defines_speed", "operation.speeds"));
             let Some(member) = train.member(&source.member) else { continue };
             let speed = self.sign(account, source.component, frame) * speed;
             match speeds.iter().find(|s| s.1 == member) {
                 Some(other) if (other.3 - speed).abs() > 1e-6 * speed.abs() => {
-                    let message = format!("its speed {speed} rpm is not that of the part it is joined to, {} rpm", other.3);
+                    let message =
+                        format!("its speed {speed} rpm is not that of the part it is joined to, {} rpm", other.3);
                     account.problem(account.called(At::model(source.component)), message);
                 }
                 Some(_) => {}
@@ -305,6 +312,18 @@ impl Loads {
     }
 }
 
+fn temperature_in(account: &mut Account<'_>, case: usize) -> Option<f64> {
+    let housing = components_of(account, "gear_casing");
+    let found: Vec<At> = housing.into_iter().filter_map(|k| find(account, case, k)).collect();
+    found.into_iter().find_map(|at| account.number(at, "temperature_lubricant", Is::Temperature, "oil.temperature"))
+}
+
+/// Temperature of the oil: of the model itself, or of its first load case.
+pub fn temperature(account: &mut Account<'_>) -> Option<f64> {
+    let first = usize::from(!account.document.cases.is_empty());
+    temperature_in(account, 0).or_else(|| temperature_in(account, first))
+}
+
 /// A component in a load case (counted from 1), or in the model itself.
 fn find(account: &Account<'_>, case: usize, component: usize) -> Option<At> {
     if case == 0 {
@@ -324,7 +343,8 @@ pub fn shifting(account: &mut Account<'_>, bodies: &mut Bodies, written: &mut Wr
         let roots = coupling.bodies.map(|b| bodies.root(b));
         let known = |b: usize| bodies.is_frame(b) || written.rotors.contains_key(&b);
         if !roots.iter().all(|b| known(*b)) || roots[0] == roots[1] {
-            account.problem(format!("coupling `{}`", coupling.name), "it joins nothing that gears turn; it is left out");
+            account
+                .problem(format!("coupling `{}`", coupling.name), "it joins nothing that gears turn; it is left out");
             continue;
         }
         let members = roots.map(|b| bodies.name(account, b));
@@ -339,8 +359,7 @@ pub fn shifting(account: &mut Account<'_>, bodies: &mut Bodies, written: &mut Wr
     }
     if !elements.is_empty() {
         for gear in 0..bodies.gears {
-            let closed: Vec<String> =
-                elements.iter().filter(|c| c.engaged[gear]).map(|c| quoted(&c.name)).collect();
+            let closed: Vec<String> = elements.iter().filter(|c| c.engaged[gear]).map(|c| quoted(&c.name)).collect();
             out.push_str(&format!("\n[[state]]\nname = \"{}\"\nengaged = [{}]\n", gear + 1, closed.join(", ")));
         }
     }

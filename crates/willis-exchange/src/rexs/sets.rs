@@ -43,8 +43,7 @@ struct Writer<'a, 'd> {
 /// Writes all stages.
 pub fn write(account: &mut Account<'_>, bodies: &mut Bodies, gearing: &Gearing) -> Written {
     let carriers = carriers(account, bodies);
-    let mut writer =
-        Writer { account, bodies, gearing, out: Written::default(), taken: vec![], mesh_names: vec![] };
+    let mut writer = Writer { account, bodies, gearing, out: Written::default(), taken: vec![], mesh_names: vec![] };
     let mut by_stage: BTreeMap<usize, Vec<&Stage>> = BTreeMap::new();
     let mut fixed: Vec<&Stage> = vec![];
     for stage in &gearing.stages {
@@ -142,10 +141,15 @@ impl Writer<'_, '_> {
             planets.dedup();
             let called = self.account.called(At::model(set));
             if central.is_empty() {
-                let message = "no relation `planet_shaft` or `central_shaft` says which gears are planets; it is left out";
+                let message =
+                    "no relation `planet_shaft` or `central_shaft` says which gears are planets; it is left out";
                 return self.account.problem(called, message);
             }
-            self.account.guess(format!("planets of {called}"), "all shafts that are not central", "no relation names them");
+            self.account.guess(
+                format!("planets of {called}"),
+                "all shafts that are not central",
+                "no relation names them",
+            );
         }
         let is_planet = |b: usize| planets.binary_search(&b).is_ok();
         // Gears and what they mesh with, which is the same for planets of one kind.
@@ -156,7 +160,8 @@ impl Writer<'_, '_> {
                 let body = self.body(own);
                 if is_planet(body) {
                     let (g, o) = (self.gear(own), self.gear(other));
-                    let of = if is_planet(self.body(other)) { format!("planet {}", o.teeth) } else { other.to_string() };
+                    let of =
+                        if is_planet(self.body(other)) { format!("planet {}", o.teeth) } else { other.to_string() };
                     marks.entry(body).or_default().push(format!("{} {:?} {of}", g.teeth, g.module));
                 }
             }
@@ -176,7 +181,8 @@ impl Writer<'_, '_> {
         }
         if classes.iter().any(|c| c.bodies.len() != count) {
             let many: Vec<String> = classes.iter().map(|c| c.bodies.len().to_string()).collect();
-            let message = format!("its planets differ ({} of each kind): a relation or an attribute is missing", many.join(", "));
+            let message =
+                format!("its planets differ ({} of each kind): a relation or an attribute is missing", many.join(", "));
             self.problem(set, message);
         }
         // One pair of each kind.
@@ -199,7 +205,7 @@ impl Writer<'_, '_> {
             }
         }
         let c = &self.account.document.components[set];
-        let name = text::name(without_number(&c.name, c.id), &format!("P{}", self.taken.len() + 1), &mut self.taken);
+        let name = text::name(without_number(&c.name), &format!("P{}", self.taken.len() + 1), &mut self.taken);
         self.out.toml.push_str(&format!("\n{}", text::comment(&self.account.called(At::model(set)))));
         let stages: Vec<&Stage> = pairs.iter().map(|p| p.1).collect();
         let carrier_name = self.bodies.name(self.account, carrier);
@@ -432,7 +438,7 @@ impl Writer<'_, '_> {
             }
         });
         let c = &self.account.document.components[stage.component];
-        let name = text::name(without_number(&c.name, c.id), &format!("stage {}", c.id), &mut self.mesh_names);
+        let name = text::name(without_number(&c.name), &format!("stage {}", c.id), &mut self.mesh_names);
         let common = self.roughness(&stage.gears);
         let geometry = self.geometry(&[stage], stage.gears[0]).unwrap_or_default();
         let gear = |w: &Self, k: usize| {
@@ -441,8 +447,7 @@ impl Writer<'_, '_> {
             let tooth = w.tooth(stage.gears[k], common);
             format!("  {{ member = {}, teeth = {}{internal}{tooth} }},\n", quoted(&names[k]), g.teeth)
         };
-        let mut body =
-            format!("[[mesh]]\nname = {}\ngears = [\n{}{}]\n", quoted(&name), gear(self, 0), gear(self, 1));
+        let mut body = format!("[[mesh]]\nname = {}\ngears = [\n{}{}]\n", quoted(&name), gear(self, 0), gear(self, 1));
         if let Some(carrier) = carrier {
             body.push_str(&format!("carrier = {}\n", quoted(carrier)));
         }
@@ -495,7 +500,10 @@ impl Writer<'_, '_> {
         let all: Vec<Gear> = gears.iter().map(|g| self.gear(*g).clone()).collect();
         let place = stages[0].component;
         if all.iter().any(|g| g.module.is_none()) {
-            self.problem(place, "a gear has no module (`normal_module`): teeth without geometry, and no losses of them");
+            self.problem(
+                place,
+                "a gear has no module (`normal_module`): teeth without geometry, and no losses of them",
+            );
             return Some(String::new());
         }
         let differs = |a: f64, b: f64| (a - b).abs() > 1e-9 * a.abs().max(b.abs());
@@ -518,7 +526,10 @@ impl Writer<'_, '_> {
             let same = a.helix * b.helix > 0.0;
             if a.helix != 0.0 && b.helix != 0.0 && same != (a.internal || b.internal) {
                 let which = if same { "the same" } else { "opposite" };
-                self.problem(stage.component, format!("its gears have {which} hands, which cannot mesh; that of the first counts"));
+                self.problem(
+                    stage.component,
+                    format!("its gears have {which} hands, which cannot mesh; that of the first counts"),
+                );
             }
         }
         let mut fields = vec![format!("module = {}", quantity(module, "mm"))];
@@ -583,7 +594,10 @@ impl Writer<'_, '_> {
                 fields.push(format!("poisson_ratio = {}", number(nu)));
             }
         } else {
-            self.problem(place, "its gears are of different materials, which the train file cannot say: steel is taken");
+            self.problem(
+                place,
+                "its gears are of different materials, which the train file cannot say: steel is taken",
+            );
         }
         Some(fields.join(", "))
     }

@@ -68,7 +68,7 @@ pub fn bearings(
     frame: &Frame,
 ) -> (String, Vec<BearingReport>, usize) {
     let document = account.document;
-    let mut groups: BTreeMap<(Vec<String>, Option<String>, Option<i64>, usize), Group> = BTreeMap::new();
+    let mut groups: BTreeMap<(Vec<String>, Option<String>, Option<u64>, usize), Group> = BTreeMap::new();
     let mut ideal = 0;
     let mut seen = vec![false; document.components.len()];
     for relation in document.relations.iter().filter(|r| r.kind == "side") {
@@ -113,11 +113,14 @@ pub fn bearings(
             let theirs = account.text(at, "bearing_type", "bearing.kind");
             let own = theirs.as_deref().and_then(|t| KINDS.iter().find(|k| k.0 == t)).map(|k| k.1);
             let read = designation.as_deref().and_then(kind_of);
-            let own = own.or(read.as_ref().and_then(|(kind, _)| Kind::NAMES.iter().find(|n| n.1 == *kind).map(|n| n.0)));
+            let own =
+                own.or(read.as_ref().and_then(|(kind, _)| Kind::NAMES.iter().find(|n| n.1 == *kind).map(|n| n.0)));
             lines.extend(own.map(|kind| format!("kind = {}", quoted(kind))));
             lines.extend(read.filter(|r| !r.1.is_empty()).map(|r| format!("series = {}", quoted(&r.1))));
             let mut sizes = 0;
-            for (theirs, own) in [("inner_diameter", "bore"), ("outer_diameter", "outside_diameter"), ("width", "width")] {
+            for (theirs, own) in
+                [("inner_diameter", "bore"), ("outer_diameter", "outside_diameter"), ("width", "width")]
+            {
                 let x = account.number(at, theirs, Is::Length, &format!("bearing.{own}")).filter(|x| *x > 0.0);
                 match x {
                     Some(x) => {
@@ -135,7 +138,9 @@ pub fn bearings(
                          the train file, to be completed",
                         text::comment(name).trim_start_matches("# ").trim_end()
                     ),
-                    None => "it has neither a designation nor dimensions: it stands in a comment of the train file".into(),
+                    None => {
+                        "it has neither a designation nor dimensions: it stands in a comment of the train file".into()
+                    }
                 };
                 account.problem(account.called(at), message);
             }
@@ -146,9 +151,10 @@ pub fn bearings(
             _ => None,
         };
         let position = place(account, component, frame).map(|p| p.0);
-        // On a planet, those of all planets are one entry; elsewhere each is its own.
-        let own = if planet.is_some() { usize::MAX } else { component };
-        let key = (members.clone(), designation.clone(), None, own);
+        // On planets, those of all planets are one entry; elsewhere those at the same place.
+        let beside = if planet.is_some() { None } else { position.map(f64::to_bits) };
+        let unnamed = if designation.is_some() { usize::MAX } else { component };
+        let key = (members.clone(), designation.clone(), beside, unnamed);
         let group = groups.entry(key).or_insert(Group {
             component,
             members,
@@ -158,7 +164,7 @@ pub fn bearings(
             locates,
             carried,
         });
-        group.places.push((position, planet.unwrap_or(component)));
+        group.places.push((position, planet.unwrap_or(usize::MAX)));
     }
     for k in (0..document.components.len()).filter(|&k| !seen[k]) {
         let kind = document.components[k].kind.as_str();
@@ -173,11 +179,11 @@ pub fn bearings(
     groups.sort_by_key(|g| g.component);
     for group in groups {
         let c = &document.components[group.component];
-        let name = text::name(without_number(&c.name, c.id), &format!("bearing {}", c.id), &mut taken);
+        let name = text::name(without_number(&c.name), &format!("bearing {}", c.id), &mut taken);
         // At each planet.
         let first = group.places.first().map(|p| p.1);
         let own: Vec<Option<f64>> = group.places.iter().filter(|p| Some(p.1) == first).map(|p| p.0).collect();
-        let on_planets = group.places.len() > 1 || group.places.iter().any(|p| p.1 != group.component);
+        let on_planets = first != Some(usize::MAX);
         let members: Vec<String> = group.members.iter().map(|m| quoted(m)).collect();
         let mut lines = vec![format!("name = {}", quoted(&name)), format!("members = [{}]", members.join(", "))];
         lines.extend(group.designation.as_ref().map(|d| format!("designation = {}", quoted(d))));
@@ -185,8 +191,12 @@ pub fn bearings(
         if own.len() > 1 {
             lines.push(format!("count = {}", own.len()));
             let places: Option<Vec<f64>> = own.iter().copied().collect();
+            if let (Some(p), false) = (own[0], on_planets) {
+                lines.push(format!("position = {}", quantity(p, "mm")));
+            }
             if let Some(places) = places {
-                let span = places.iter().copied().fold(f64::MIN, f64::max) - places.iter().copied().fold(f64::MAX, f64::min);
+                let span =
+                    places.iter().copied().fold(f64::MIN, f64::max) - places.iter().copied().fold(f64::MAX, f64::min);
                 if span > 1e-6 {
                     lines.push(format!("span = {}", quantity(span, "mm")));
                 }
@@ -205,7 +215,7 @@ pub fn bearings(
     (out, reports, ideal)
 }
 
-/// The lubricant of the housing, or the only one there is, with the temperature of the model itself.
+/// The lubricant of the housing, or the only one there is.
 pub fn oil(account: &mut Account<'_>, bodies: &Bodies) -> Option<Vec<String>> {
     let document = account.document;
     let is_oil = |k: &usize| document.components[*k].kind == "lubricant";
@@ -235,7 +245,7 @@ pub fn oil(account: &mut Account<'_>, bodies: &Bodies) -> Option<Vec<String>> {
     };
     let c = &document.components[chosen];
     let name = account.text(at, "name", "oil.name");
-    let name = name.unwrap_or_else(|| without_number(&c.name, c.id).to_owned());
+    let name = name.unwrap_or_else(|| without_number(&c.name).to_owned());
     let name = text::name(&name, "lubricant of the file", &mut vec![]);
     let mut lines = vec![
         format!("name = {}", quoted(&name)),
