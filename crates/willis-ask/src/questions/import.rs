@@ -18,7 +18,7 @@ use crate::{Attachment, Extra, File, Form, Given, Holds, Of, Question, Refusal};
 ///
 /// REXS 1.0 to 1.6, as XML (.rexs), JSON (.rexsj) or zip (.rexsz): cylindrical and planetary stages, gears with their
 /// geometry, bearings, lubricant, shift elements and load cases. The train file begins with what was assumed and what is
-/// missing; with --format text the answer is an account of every attribute: used, left out or unusable. A broken file is
+/// missing; as text the answer is an account of every attribute: used, left out or unusable. A broken file is
 /// read as far as it goes. Worm and bevel stages are refused.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]

@@ -243,6 +243,13 @@ pub fn oil(account: &mut Account<'_>, bodies: &Bodies) -> Option<Vec<String>> {
         account.problem(account.called(at), message);
         return None;
     };
+    if nu_100 >= nu_40 {
+        let message = format!(
+            "a viscosity of {nu_100} mm^2/s at 100 degrees is not below that at 40, {nu_40}; without it there is no oil"
+        );
+        account.problem(account.called(at), message);
+        return None;
+    }
     let c = &document.components[chosen];
     let name = account.text(at, "name", "oil.name");
     let name = name.unwrap_or_else(|| without_number(&c.name).to_owned());

@@ -155,6 +155,13 @@ fn possible(train: &Train) -> Result<(), Diagnostics> {
     if wrong.has_errors() { Err(wrong) } else { Ok(()) }
 }
 
+/// Gears of the gearbox: the states, and one with nothing closed if an operation runs so.
+fn gears(train: &Train) -> usize {
+    let states = train.states().len();
+    let as_drawn = states > 0 && train.operations().iter().any(|o| o.state.is_none());
+    states + usize::from(as_drawn)
+}
+
 /// Where axes lie, as far as the angles between them are given: members of a set share one.
 fn axes(train: &Train) -> HashMap<MemberId, [f64; 2]> {
     let is_planet = |m: MemberId| train.members()[m.index()].kind == MemberKind::Planet;
@@ -208,7 +215,7 @@ impl Writer<'_> {
 
     fn unit(&mut self) {
         let unit = self.file.add("gear_unit", self.train.name());
-        let states = self.train.states().len().max(1);
+        let states = gears(self.train).max(1);
         self.file.set(unit, "number_of_gears", "none", states);
         let casing = self.file.add("gear_casing", "housing");
         self.file.relate("assembly", &[("assembly", unit), ("part", casing)]);
@@ -217,8 +224,14 @@ impl Writer<'_> {
             let oil = &lubrication.oil;
             let id = self.file.add("lubricant", &*oil.name);
             let nu = |celsius: f64| oil.kinematic_viscosity(celsius + 273.15) * 1e6;
-            self.file.number(id, "viscosity_at_40_degree_celsius", "mm^2 / s", nu(40.0));
-            self.file.number(id, "viscosity_at_100_degree_celsius", "mm^2 / s", nu(100.0));
+            if nu(100.0) < nu(40.0) {
+                self.file.number(id, "viscosity_at_40_degree_celsius", "mm^2 / s", nu(40.0));
+                self.file.number(id, "viscosity_at_100_degree_celsius", "mm^2 / s", nu(100.0));
+            } else {
+                let told =
+                    "the oil has one viscosity at all temperatures, which is left out: this format wants it at two";
+                self.file.notes.push(told.into());
+            }
             self.file.number(id, "density_at_15_degree_celsius", "kg / dm^3", oil.density_15 / 1000.0);
             self.file.set(id, "name", "none", escaped(&oil.name));
             self.file.relate("reference", &[("origin", CASING), ("referenced", id)]);
@@ -293,7 +306,12 @@ impl Writer<'_> {
         let stage = self.file.add("planetary_stage", &*name);
         self.file.relate("assembly", &[("assembly", GEAR_UNIT), ("part", stage)]);
         let shaft = self.shaft_of(carrier);
-        let body = self.file.add("planet_carrier", format!("carrier of {name}"));
+        // What reads it may call the carrier by this.
+        let called = match self.kind(carrier) {
+            MemberKind::Frame => format!("carrier of {name}"),
+            _ => self.train.member_name(carrier).to_owned(),
+        };
+        let body = self.file.add("planet_carrier", called);
         self.file.relate("assembly", &[("assembly", stage), ("part", body)]);
         self.file.relate("assembly", &[("assembly", body), ("part", shaft)]);
         self.file.relate("planet_carrier_shaft", &[("planetary_stage", stage), ("shaft", shaft)]);
@@ -384,8 +402,12 @@ impl Writer<'_> {
             self.file.relate("assembly", &[("assembly", shaft), ("part", id)]);
             self.file.set(id, "number_of_teeth", "none", count);
             if let Some((d, wheel, teeth)) = data {
-                let hand = if half == 0 { teeth.hand_of(k) } else { -teeth.hand_of(k) };
-                let hand = if hand == 0.0 { [1.0, -1.0][k] } else { hand };
+                // A double helical pair has no hand of its own: suns begin with a right-hand half.
+                let is_second =
+                    gear.internal || self.kind(gear.member) == MemberKind::Planet || mesh.set.is_none() && k == 1;
+                let own = if is_second { -1.0 } else { 1.0 };
+                let first = if d.double_helical || teeth.hand == 0.0 { own } else { teeth.hand_of(k) };
+                let hand = if half == 0 { first } else { -first };
                 self.file.number(id, "normal_module", "mm", d.module * MM);
                 self.file.number(id, "face_width", "mm", d.width * MM);
                 self.file.number(id, "helix_angle_reference_diameter", "deg", hand * d.helix.to_degrees());
@@ -506,9 +528,7 @@ impl Writer<'_> {
             self.file.relate("side", &[("assembly", id), ("inner_part", inner), ("outer_part", outer)]);
             let closed = |s: &willis::train::State| s.engaged.iter().any(|e| e.index() == k);
             let mut flags: Vec<bool> = train.states().iter().map(closed).collect();
-            if flags.is_empty() {
-                flags.push(false);
-            }
+            flags.resize(gears(train).max(1), false);
             let flags: String = flags.iter().map(|f| format!("<c>{f}</c>")).collect();
             self.file.set(id, "is_engaged", "none", format!("<array>{flags}</array>"));
             if element.kind == ShiftElementKind::OneWay {
@@ -546,8 +566,9 @@ impl Writer<'_> {
                 if solved { operate(train, operation).ok().map(|(report, _)| report) } else { None };
             let unique = report.as_ref().filter(|r| r.verdict == Verdict::Unique).and_then(|r| r.solutions.first());
             let mut case: Varied = vec![];
-            if let Some(state) = operation.state {
-                case.push((GEAR_UNIT, vec![("gear_shift_index", "none", (state + 1).to_string())]));
+            if !train.states().is_empty() {
+                let gear = operation.state.map_or(gears(train), |state| state + 1);
+                case.push((GEAR_UNIT, vec![("gear_shift_index", "none", gear.to_string())]));
             }
             for (k, member) in train.members().iter().enumerate() {
                 let Some(id) = train.member(&member.name).filter(|id| self.shafts.contains_key(id)) else { continue };
