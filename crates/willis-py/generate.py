@@ -34,6 +34,7 @@ POSITIONAL = {
     "validate": ["case"],
     "laws": ["family"],
     "export": ["kind"],
+    "import": ["file"],
 }
 
 #: Classes of answers that have more than their data.
@@ -169,6 +170,12 @@ True
     "export": """
 >>> list(willis.read("examples/zf-8hp70.toml").export("csv", state="3").files("files"))
 ['zf-8hp70-3.csv']
+""",
+    "import": """
+>>> found = willis.import_("examples/planetary-stage.rexs")
+>>> train = willis.Train(found.files("train").popitem()[1].decode())
+>>> len(train.analyze().data.operations)
+2
 """,
     "laws": """
 >>> willis.laws("film").tables["laws"]["family"][0]
@@ -333,7 +340,7 @@ def question(entry: dict[str, Any]) -> str:
     result = f"contracts.{contract_class(entry)}"
     trains = {"trains": "[self, *others]", "nothing": "[]"}.get(of, "[self]")
     trains = trains.replace("self", "cast(Any, self)")
-    lines = [f"{pad}def {name}("]
+    lines = [f"{pad}def {python_name(name)}("]
     lines += [f"{pad}    {a}," for a in arguments]
     lines += [f'{pad}) -> "{result}":']
     body = paragraphs(root.get("description", "").strip(), indent + 4).lstrip()
@@ -381,7 +388,7 @@ def questions(entries: list[dict[str, Any]]) -> str:
     """The module of all questions."""
     methods = [question(e) for e in entries if e["of"] != "nothing"]
     functions = [question(e) for e in entries if e["of"] == "nothing"]
-    names = [e["name"] for e in entries if e["of"] == "nothing"]
+    names = [python_name(e["name"]) for e in entries if e["of"] == "nothing"]
     return (
         HEAD.format(about="Every question of the library, as methods of a train and as functions.")
         + '''from __future__ import annotations

@@ -125,6 +125,68 @@ pub enum Holds {
     Train,
     /// What Willis itself wrote, to go on with (JSON).
     Progress,
+    /// A file of another program, text or not ([`Attachment::holding`]).
+    Exchange,
+}
+
+/// What the text of a file begins with that is no text in UTF-8.
+const BASE64: &str = "data:;base64,";
+
+impl Attachment {
+    /// A file of any bytes. Its text is what it holds; of a file that is no text in UTF-8, a data URI in base64.
+    ///
+    /// ```
+    /// use willis_ask::Attachment;
+    ///
+    /// let zip = Attachment::holding("x.zip", b"PK\x03\x04\xff");
+    /// assert_eq!(zip.text, "data:;base64,UEsDBP8=");
+    /// assert_eq!(zip.bytes().unwrap(), b"PK\x03\x04\xff");
+    /// assert_eq!(Attachment::holding("x.txt", b"text").text, "text");
+    /// ```
+    pub fn holding(name: impl Into<String>, bytes: &[u8]) -> Self {
+        const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        if let Ok(text) = std::str::from_utf8(bytes) {
+            return Self { name: name.into(), text: text.to_owned() };
+        }
+        let mut text = String::with_capacity(BASE64.len() + bytes.len().div_ceil(3) * 4);
+        text.push_str(BASE64);
+        for three in bytes.chunks(3) {
+            let byte = |k: usize| u32::from(three.get(k).copied().unwrap_or(0));
+            let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+            for k in 0..4 {
+                let digit = DIGITS[(bits >> (18 - 6 * k) & 63) as usize] as char;
+                text.push(if k <= three.len() { digit } else { '=' });
+            }
+        }
+        Self { name: name.into(), text }
+    }
+
+    /// The bytes of [`Attachment::holding`].
+    ///
+    /// # Errors
+    /// It begins as a data URI in base64 and is none.
+    pub fn bytes(&self) -> Result<std::borrow::Cow<'_, [u8]>, String> {
+        let Some(coded) = self.text.strip_prefix(BASE64) else { return Ok(self.text.as_bytes().into()) };
+        let mut bytes = Vec::with_capacity(coded.len() / 4 * 3);
+        let (mut bits, mut many) = (0u32, 0);
+        for c in coded.trim_end_matches('=').bytes() {
+            let digit = match c {
+                b'A'..=b'Z' => c - b'A',
+                b'a'..=b'z' => c - b'a' + 26,
+                b'0'..=b'9' => c - b'0' + 52,
+                b'+' => 62,
+                b'/' => 63,
+                _ => return Err("its text is no base64".into()),
+            };
+            bits = bits << 6 | u32::from(digit);
+            many += 6;
+            if many >= 8 {
+                many -= 8;
+                bytes.push((bits >> many) as u8);
+            }
+        }
+        Ok(bytes.into())
+    }
 }
 
 impl From<&str> for Attachment {

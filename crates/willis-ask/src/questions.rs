@@ -15,6 +15,8 @@ mod export;
 mod flow;
 mod formula;
 mod heat;
+#[cfg(feature = "import")]
+mod import;
 mod laws;
 mod locate;
 mod losses;
@@ -50,6 +52,8 @@ pub use export::Export;
 pub use flow::Flow;
 pub use formula::{Formula, FormulaAnswer};
 pub use heat::Heat;
+#[cfg(feature = "import")]
+pub use import::{Import, ImportAnswer};
 pub use laws::Laws;
 pub use locate::Locate;
 pub use losses::Losses;
@@ -99,6 +103,8 @@ pub static QUESTIONS: &[Entry] = &[
     #[cfg(feature = "pictures")]
     Entry::of::<Report>(),
     Entry::of::<Export>(),
+    #[cfg(feature = "import")]
+    Entry::of::<Import>(),
     Entry::of::<Laws>(),
     #[cfg(feature = "casebook")]
     Entry::of::<Validate>(),

@@ -46,6 +46,18 @@ fn requests_without_train(entry: &Entry) -> Vec<Value> {
                 json!({ "like": file("fva-planetary-stage.toml"), "tolerance": "0.02" }),
             ]
         }
+        "import" => {
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+            let text = fs::read_to_string(folder.join("fva-planetary-stage.toml")).unwrap();
+            let given = [Given::read("fva.toml", &text).unwrap()];
+            let export = willis_ask::question("export").unwrap().request(json!({ "kind": "rexs" })).unwrap();
+            let files: Value = serde_json::from_str(&export.ask(&given, &Serial).unwrap().json()).unwrap();
+            let file = |text: &Value| json!({ "name": "fva.rexs", "text": text });
+            vec![
+                json!({ "file": file(&files["files"][0]["text"]) }),
+                json!({ "file": file(&files["files"][0]["text"]), "convention": "outward" }),
+            ]
+        }
         "schemes" => {
             let two =
                 json!({ "sets": 2, "elements": 4, "closed": 2, "forward": 3, "rediscover": "gm", "order": "spread" });

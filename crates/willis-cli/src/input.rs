@@ -49,6 +49,15 @@ const PROGRESS: Kind = Kind {
     ending: "json",
 };
 
+/// A file of another program.
+const EXCHANGE: Kind = Kind {
+    most_mib: 64,
+    too_large: "a gearbox is a few megabytes",
+    directory: "name a file in it",
+    no_text: "",
+    ending: "rexs",
+};
+
 /// All tables of a train file together.
 const MOST_TABLES_MIB: u64 = 256;
 
@@ -121,9 +130,19 @@ pub fn attached(file: &str, holds: Holds) -> Result<String, Diagnostics> {
     let kind = match holds {
         Holds::Train => &TRAIN,
         Holds::Progress => &PROGRESS,
+        Holds::Exchange => return any_of(file, &EXCHANGE),
         _ => &TABLE,
     };
     of_kind(file, kind)
+}
+
+/// A file of any bytes, as the text of an attachment.
+fn any_of(file: &str, kind: &Kind) -> Result<String, Diagnostics> {
+    let bytes = match file {
+        "-" => bytes_of(std::io::stdin(), "standard input", kind),
+        _ => open_bytes(Path::new(file), file, kind),
+    };
+    bytes.map(|bytes| Attachment::holding(file, &bytes).text).map_err(|why| unread(file, kind, why))
 }
 
 fn of_kind(file: &str, kind: &Kind) -> Result<String, Diagnostics> {
@@ -131,16 +150,18 @@ fn of_kind(file: &str, kind: &Kind) -> Result<String, Diagnostics> {
         "-" => text_of(std::io::stdin(), "standard input", kind),
         _ => open(Path::new(file), file, kind),
     };
-    text.map_err(|(message, hint)| {
-        let d = Diagnostic::new(Code::Unreadable, "", message);
-        let near = neighbours(Path::new(file), kind);
-        let d =
-            if file == "-" || Path::new(file).exists() { d } else { d.suggest(file, near.iter().map(String::as_str)) };
-        // A suggestion is for the command line and replaces nothing in a text.
-        let mut d = d.hint(hint);
-        d.replacement = None;
-        d.into()
-    })
+    text.map_err(|why| unread(file, kind, why))
+}
+
+/// Why a file was not read, with the nearest name of those that are there.
+fn unread(file: &str, kind: &Kind, (message, hint): Unread) -> Diagnostics {
+    let d = Diagnostic::new(Code::Unreadable, "", message);
+    let near = neighbours(Path::new(file), kind);
+    let d = if file == "-" || Path::new(file).exists() { d } else { d.suggest(file, near.iter().map(String::as_str)) };
+    // A suggestion is for the command line and replaces nothing in a text.
+    let mut d = d.hint(hint);
+    d.replacement = None;
+    d.into()
 }
 
 /// Files of that kind where a file was looked for.
@@ -237,18 +258,26 @@ pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, String> {
 }
 
 fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Unread> {
+    text(open_bytes(path, name, kind)?, name, kind)
+}
+
+fn open_bytes(path: &Path, name: &str, kind: &Kind) -> Result<Vec<u8>, Unread> {
     // Not every system opens a directory.
     if path.is_dir() {
         return Err((format!("{name} is a directory"), kind.directory));
     }
     match regular(path) {
-        Ok(file) => text_of(file, name, kind),
+        Ok(file) => bytes_of(file, name, kind),
         Err(_) if path.exists() && !path.is_file() => Err((format!("{name} is no ordinary file"), STREAM)),
         Err(e) => Err((format!("{name}: {e}"), PERMISSIONS)),
     }
 }
 
 fn text_of(from: impl Read, name: &str, kind: &Kind) -> Result<String, Unread> {
+    text(bytes_of(from, name, kind)?, name, kind)
+}
+
+fn bytes_of(from: impl Read, name: &str, kind: &Kind) -> Result<Vec<u8>, Unread> {
     let most = kind.most_mib << 20;
     let mut bytes = Vec::new();
     let read = from.take(most + 1).read_to_end(&mut bytes);
@@ -256,6 +285,10 @@ fn text_of(from: impl Read, name: &str, kind: &Kind) -> Result<String, Unread> {
     if bytes.len() as u64 > most {
         return Err((format!("{name} is larger than {} MiB", kind.most_mib), kind.too_large));
     }
+    Ok(bytes)
+}
+
+fn text(bytes: Vec<u8>, name: &str, kind: &Kind) -> Result<String, Unread> {
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         (format!("{name} is not text in UTF-8 (byte {at})"), kind.no_text)

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::context::{Context, passes};
-use crate::generate::build_willis;
+use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// The simulators, and what runs the tests.

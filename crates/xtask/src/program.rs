@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::context::Context;
 
-/// Builds the optimised program, and with it the Python package: alone each has other features of the same dependencies, so that
+/// Builds the optimised program, with the Python package and the runtime of FMUs, which lies beside it: alone each has other features of the same dependencies, so that
 /// everything above them would be compiled twice.
 pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli -p willis-py -p willis-fmu";
 

@@ -95,6 +95,30 @@ pub struct OneKind {
     pub about: String,
 }
 
+/// The format that a crate of its own writes.
+#[cfg(feature = "import")]
+const REXS: (&str, &str) = ("rexs", "the gearbox for gear programs: REXS 1.6 (XML)");
+
+/// The train as REXS: all of it, whatever its states and operations.
+#[cfg(feature = "import")]
+fn rexs(model: &willis::model::Model, request: &ExportRequest) -> Result<willis::study::export::Export, Diagnostics> {
+    use willis::study::export::{ExportedFile, export_with};
+    if *request != ExportRequest::default() {
+        let message = "this format has the whole gearbox, with all of its states and operations";
+        let d = Diagnostic::new(Code::Conflict, "", message);
+        return Err(d.hint("leave out states, operations, ranges and temperatures").into());
+    }
+    export_with(model, ["<!-- ", " -->"], &|train, is_trial| {
+        let done = willis_exchange::rexs::written(train, !is_trial)?;
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+        let name: String = train.name().chars().take(60).map(plain).collect();
+        let name = name.split('-').filter(|p| !p.is_empty()).collect::<Vec<_>>().join("-");
+        let name = if name.is_empty() { "train".to_owned() } else { name };
+        let about = "the gearbox as REXS 1.6";
+        Ok((vec![ExportedFile::new(format!("{name}.rexs"), done.text, about)], done.notes))
+    })
+}
+
 impl Question for Export {
     const NAME: &'static str = "export";
     const OF: Of = Of::AtMostOne;
@@ -126,7 +150,10 @@ impl Question for Export {
                 return Err(d.hint("name a train file after the kind of export").into());
             }
             (None, _) => {
-                let kinds = KINDS.iter().map(|k| OneKind { name: k.id.to_owned(), about: k.about.to_owned() });
+                let kinds = KINDS.iter().map(|k| (k.id, k.about));
+                #[cfg(feature = "import")]
+                let kinds = kinds.chain([REXS]);
+                let kinds = kinds.map(|(name, about)| OneKind { name: name.to_owned(), about: about.to_owned() });
                 return Ok(ExportAnswer { kinds: kinds.collect(), ..answer(None) });
             }
         };
@@ -139,6 +166,9 @@ impl Question for Export {
             temperatures: (!self.temperature.is_empty()).then(|| self.temperature.join(",")),
         };
         work.afford(&effort(&of[0].model))?;
+        #[cfg(feature = "import")]
+        let done = if kind == REXS.0 { rexs(&of[0].model, &request) } else { export(&of[0].model, kind, &request) }?;
+        #[cfg(not(feature = "import"))]
         let done = export(&of[0].model, kind, &request)?;
         let file = |f: willis::study::export::ExportedFile| OneFile { name: f.name, about: f.about, text: f.text };
         Ok(ExportAnswer {

@@ -13,7 +13,10 @@ pub fn figures() -> Vec<&'static str> {
 
 /// Kinds of exports; `list` lists them.
 pub fn exports() -> Vec<&'static str> {
-    willis::study::export::KINDS.iter().map(|k| k.id).chain(["list"]).collect()
+    let kinds = willis::study::export::KINDS.iter().map(|k| k.id);
+    #[cfg(feature = "import")]
+    let kinds = kinds.chain(["rexs"]);
+    kinds.chain(["list"]).collect()
 }
 
 /// Cases of published numbers.

@@ -20,7 +20,7 @@ from ._compiled import CompiledTrain
 from ._errors import Diagnostic, TrainError, TrainWarning
 from ._exercise import Exercise, exercise
 from ._on import On, Parts, on
-from ._questions import design, explain, laws, new, schemes, validate
+from ._questions import design, explain, import_, laws, new, schemes, validate
 from ._record import Record
 from ._table import Table
 from ._train import Train, read, simple
@@ -49,6 +49,7 @@ __all__ = [
     "design",
     "exercise",
     "explain",
+    "import_",
     "laws",
     "new",
     "on",

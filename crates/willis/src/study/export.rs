@@ -111,6 +111,13 @@ pub struct ExportedFile {
     pub about: String,
 }
 
+impl ExportedFile {
+    /// A file by its name without a folder, its text and one line about it.
+    pub fn new(name: impl Into<String>, text: impl Into<String>, about: impl Into<String>) -> Self {
+        Self { name: name.into(), text: text.into(), about: about.into() }
+    }
+}
+
 /// What came out.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -238,14 +245,62 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
         return Err(d.suggest(kind, known).hint(format!("the exports are: {}", all.join(", "))).into());
     };
     let asked = Asked::read(request)?;
-    let mut done = (found.write)(model.train(), &asked)?;
+    let done = (found.write)(model.train(), &asked)?;
     let ends = map::ends(model.train(), &asked);
-    done.not_carried = left_out(model, &|train| {
+    let trial = |train: &Train| {
         let done = (found.write)(train, &ends).ok()?;
         Some(done.files.into_iter().map(|f| f.text).collect())
-    });
+    };
+    Ok(complete(model, done, found.comment, &trial))
+}
+
+/// Exports a train in a format that stands elsewhere. `write` gives the files and notes of a train, and is also asked for
+/// trains with other values, which shows what is not carried over: whether it is such a trial is its second argument.
+/// `comment` is what begins and ends a comment in the format.
+///
+/// # Errors
+/// What `write` says.
+///
+/// # Example
+/// ```
+/// use willis::model::Model;
+/// use willis::study::export::{ExportedFile, export_with};
+/// use willis::train::{SetSpec, Train};
+///
+/// let model = Model::new(
+///     Train::builder("reducer")
+///         .members(["sun", "carrier"])
+///         .terminals(["sun", "carrier"])
+///         .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4)),
+/// )?;
+/// let done = export_with(&model, ["# ", ""], &|train, _| {
+///     let text = format!("meshes\n{}\n", train.meshes().len());
+///     Ok((vec![ExportedFile::new("x.txt", text, "how many meshes")], vec![]))
+/// })?;
+/// assert!(done.not_carried.iter().any(|n| n.key == "set.planet.teeth"));
+/// assert!(done.files[0].text.starts_with("meshes\n# "));
+/// # Ok::<(), willis::diagnostic::Diagnostics>(())
+/// ```
+pub fn export_with(
+    model: &Model,
+    comment: [&str; 2],
+    write: &dyn Fn(&Train, bool) -> Result<(Vec<ExportedFile>, Vec<String>), Diagnostics>,
+) -> Result<Export, Diagnostics> {
+    let (files, notes) = write(model.train(), false)?;
+    let trial = |train: &Train| Some(write(train, true).ok()?.0.into_iter().map(|f| f.text).collect());
+    Ok(complete(model, Export::new(files, notes), comment, &trial))
+}
+
+/// Tells what an export does not carry over, in the files and beside them.
+fn complete(
+    model: &Model,
+    mut done: Export,
+    comment: [&str; 2],
+    trial: &dyn Fn(&Train) -> Option<Vec<String>>,
+) -> Export {
+    done.not_carried = left_out(model, trial);
     if let Some(told) = sentence(&done.not_carried) {
-        let [begin, end] = found.comment;
+        let [begin, end] = comment;
         for file in done.files.iter_mut().filter(|_| !begin.is_empty()) {
             // Below the first line: some formats want a header there, the others say whose file it is.
             let at = file.text.find('\n').map_or(file.text.len(), |k| k + 1);
@@ -262,7 +317,7 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
     }
     done.notes = told;
     done.assumptions = analysis::assumptions(model.train());
-    Ok(done)
+    done
 }
 
 /// Who wrote it, for the first comment of a file.
