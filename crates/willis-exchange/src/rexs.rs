@@ -269,7 +269,7 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
         unusable: many(Fate::Unusable),
         ideal_supports: ideal,
     };
-    let report = Report {
+    let mut report = Report {
         version: printable(&document.version).into_owned(),
         application: printable(&document.application).into_owned(),
         counts,
@@ -282,6 +282,17 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
         attributes,
     };
     let toml = format!("{}{head}{body}{operations}", comments(&report, title));
+    let wrong = match Model::from_toml(&toml) {
+        Ok(model) => return Ok(Imported { toml, model, report }),
+        Err(wrong) => wrong,
+    };
+    // The train is sound; what the load cases prescribe is not.
+    for d in wrong.iter().take(20) {
+        let message = format!("the load cases are left out: {}", d.message);
+        report.problems.push(Problem { place: "the train".into(), message });
+    }
+    report.load_cases.iter_mut().for_each(|case| case.operation = None);
+    let toml = format!("{}{head}{body}", comments(&report, title));
     let model = Model::from_toml(&toml)?;
     Ok(Imported { toml, model, report })
 }
