@@ -234,7 +234,7 @@ impl FixedStep {
         if !(h > 0.0 && h.is_finite()) {
             return Err(fail(format!("a step of {h} s"), "a step is longer than zero"));
         }
-        let system = System::new(train, scenario, h)?;
+        let system = System::new(train, scenario, h, false)?;
         if system.groups.len() > MOST_GROUPS || system.elements.len() > MOST_ELEMENTS {
             let message = format!(
                 "{} friction groups and {} mesh elements: steps of fixed length take at most {MOST_GROUPS} and {MOST_ELEMENTS}",

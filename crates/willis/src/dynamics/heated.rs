@@ -14,13 +14,26 @@ impl Engine {
     /// The network has no temperatures at the start.
     pub fn warm(&mut self) -> Result<(), Unsolved> {
         let Some(warming) = Warming::of(&self.system, self.system.scenario.start)? else { return Ok(()) };
-        self.counts = true;
         self.shows.extend(warming.places().map(Shows::Temperature));
-        if let Some(laws) = &mut self.system.laws {
-            laws.warm_to(warming.oil());
-        }
         self.warming = Some(Box::new(warming));
+        self.warm_laws();
         Ok(())
+    }
+
+    /// Lets the laws see the oil as warm as it is. Whether that changes them.
+    fn warm_laws(&mut self) -> bool {
+        let Some(oil) = self.warming.as_ref().map(|w| w.oil()) else { return false };
+        self.system.laws.as_mut().is_some_and(|laws| laws.warm_to(oil))
+    }
+
+    /// Temperatures and heats that were [saved](Warming::saved). Whether they are such.
+    pub fn restore_heat(&mut self, numbers: &[f64]) -> bool {
+        let restored = match &mut self.warming {
+            Some(warming) => warming.restore(numbers),
+            None => numbers.is_empty(),
+        };
+        self.warm_laws();
+        restored
     }
 
     /// Lets the temperatures follow up to a time that was reached, where it is time to. Whether the laws have changed.
@@ -28,7 +41,6 @@ impl Engine {
         let states = self.states();
         let Some(warming) = self.warming.as_mut().filter(|w| w.is_due(t, &x[states..])) else { return false };
         warming.follow(t, &x[states..]);
-        let oil = warming.oil();
-        self.system.laws.as_mut().is_some_and(|laws| laws.warm_to(oil))
+        self.warm_laws()
     }
 }

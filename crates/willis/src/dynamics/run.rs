@@ -137,13 +137,13 @@ impl Simulation {
     /// An unknown scenario, contradictory speeds, inertia that is missing.
     pub fn new(train: &Train, scenario: &str, options: &Options) -> Result<Self, Diagnostics> {
         options.check()?;
-        let system = System::new(train, scenario, 0.0)?;
+        let system = System::new(train, scenario, 0.0, warms(options))?;
         let mut engine = Engine::new(system);
         let [from, to] = options.window(&engine.system.scenario)?;
         engine.system.scenario.end = to;
         engine.counts = options.energies;
         engine.slack = (0.1 * options.tolerance / NOISE).max(1.0);
-        if options.method == Method::Adaptive {
+        if warms(options) {
             warm(&mut engine)?;
         }
         let columns = engine.columns();
@@ -186,7 +186,7 @@ impl Simulation {
     /// Speeds at the start that contradict each other under inputs that were set.
     pub fn again(self) -> Result<Self, Diagnostics> {
         let mut engine = self.engine.anew();
-        if self.options.method == Method::Adaptive {
+        if warms(&self.options) {
             warm(&mut engine)?;
         }
         Self::at_start(engine, self.columns, self.options, self.from)
@@ -584,6 +584,7 @@ impl Simulation {
                 }
                 self.shorten(target);
                 self.take_state(target);
+                self.engine.follow_heat(self.t, &self.x);
                 self.rolling = false;
                 self.why = None;
                 return Stretch::Reached;
@@ -829,6 +830,11 @@ impl Simulation {
             rows: None,
         }
     }
+}
+
+/// Whether temperatures follow what is lost, which must be counted for that.
+fn warms(options: &Options) -> bool {
+    options.method == Method::Adaptive && options.energies
 }
 
 /// Lets temperatures follow what is lost.

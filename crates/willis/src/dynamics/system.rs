@@ -118,8 +118,9 @@ impl System {
     /// Speeds that contradict each other, coordinates without inertia, meshes whose forces are not
     /// determined.
     ///
-    /// `step`: the length of the steps, s, it is made for; 0 where that is adapted.
-    pub fn new(train: &Train, name: &str, step: f64) -> Result<Self, Diagnostics> {
+    /// `step`: the length of the steps, s, it is made for; 0 where that is adapted. `warms`: whether the temperature of the oil
+    /// follows what is lost, where the train says what carries its heat away.
+    pub fn new(train: &Train, name: &str, step: f64, warms: bool) -> Result<Self, Diagnostics> {
         let scenario = train.find_scenario(name)?;
         let laws = Laws::of(train);
         let c = Configuration::new(train, &[], &scenario.fixed, &visible(train, scenario, laws.as_ref()));
@@ -127,13 +128,15 @@ impl System {
         checks::pulses(scenario)?;
         checks::rates(scenario)?;
         let coordinates = Coordinates::of(&c, scenario)?;
-        Self::assemble(scenario, step, &c, coordinates, laws)
+        let warms = warms && train.heat().is_some_and(|h| h.is_stored());
+        Self::assemble(scenario, step, warms, &c, coordinates, laws)
     }
 
     /// The equations of motion, part by part. The order of the parts is that of their ports.
     fn assemble(
         scenario: &Scenario,
         step: f64,
+        warms: bool,
         c: &Configuration<'_>,
         coordinates: Coordinates,
         mut laws: Option<Laws>,
@@ -152,7 +155,7 @@ impl System {
         if let Some(laws) = &mut laws {
             laws.first = frictions.len();
             frictions.extend(law_places(laws, &mut ports));
-            assumptions.extend(laws.assumptions(train, step == 0.0 && train.heat().is_some_and(|h| h.is_stored())));
+            assumptions.extend(laws.assumptions(train, warms));
         }
         assumptions.extend(not_followed(train));
         let mut paths = Paths::of(train, scenario, integrals, frictions.len(), &mut ports)?;

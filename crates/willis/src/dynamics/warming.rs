@@ -178,6 +178,27 @@ impl Warming {
         above
     }
 
+    /// Everything that changes in a run, as numbers.
+    pub fn saved(&self) -> Vec<f64> {
+        let times = [self.since, self.span, self.made, self.carried, self.highest, self.beyond.unwrap_or(f64::NAN)];
+        let lists = [&self.counted, &self.temperatures, &self.start, &self.leaving, &self.making];
+        times.into_iter().chain(lists.into_iter().flatten().copied()).collect()
+    }
+
+    /// Goes back to what was saved. False where these are not as many numbers; nothing has changed then.
+    pub fn restore(&mut self, numbers: &[f64]) -> bool {
+        if numbers.len() != self.saved().len() {
+            return false;
+        }
+        let mut all = numbers.iter().copied();
+        let mut next = || all.next().expect("as many");
+        [self.since, self.span, self.made, self.carried, self.highest] = [next(), next(), next(), next(), next()];
+        self.beyond = Some(next()).filter(|t| !t.is_nan());
+        let lists = [&mut self.counted, &mut self.temperatures, &mut self.start, &mut self.leaving, &mut self.making];
+        lists.into_iter().flatten().for_each(|x| *x = next());
+        true
+    }
+
     /// What there is to say at a time.
     pub fn report(&self, t: f64, energies: &[f64]) -> MotionHeat {
         let mut end = self.clone();

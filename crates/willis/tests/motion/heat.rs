@@ -202,6 +202,31 @@ fn losses_follow_the_oil_as_it_warms() {
     assert_eq!(again.read(loss), cold);
 }
 
+/// A run that goes on from a saved state goes on as warm as it was, in steps of another program too.
+#[test]
+fn a_saved_run_is_as_warm_as_it_was() {
+    let model = gearbox(20.0);
+    let mut run = Simulation::new(model.train(), "warms", &Options::default()).expect("a run");
+    for k in 1..=60 {
+        run.go_on(f64::from(k));
+    }
+    let bytes = run.save();
+    let mut other = Simulation::new(model.train(), "warms", &Options::default()).expect("a run");
+    other.restore(&bytes).expect("its own state");
+    let oil = run.output("oil.temperature").expect("a column");
+    let warm = run.read(oil);
+    assert!(warm > 294.0, "{warm}");
+    for r in [&mut run, &mut other] {
+        r.go_on(300.0);
+    }
+    let (a, b) = (run.read(oil), other.read(oil));
+    assert!((a - b).abs() < 1e-9 && a > warm + 0.5, "{a} {b}");
+    // In one piece it is the same, to the step of the temperature.
+    let mut whole = Simulation::new(model.train(), "warms", &Options::default()).expect("a run");
+    whole.go_on(300.0);
+    assert!((whole.read(oil) - a).abs() < 0.02, "{} {a}", whole.read(oil));
+}
+
 /// Rows do not move the run, and a run in pieces is the run.
 #[test]
 fn temperatures_do_not_depend_on_who_looks() {

@@ -163,6 +163,7 @@ impl Simulation {
         to.numbers(counts.map(|x| x as f64).into_iter());
         to.numbers(times.into_iter());
         to.numbers(others.into_iter());
+        to.numbers(engine.warming.iter().flat_map(|w| w.saved()).collect::<Vec<f64>>().into_iter());
         to.text(&self.told);
         to.text(&self.outcome.as_ref().map_or(String::new(), |o| serde_json::to_string(o).unwrap_or_default()));
         to.0
@@ -220,6 +221,9 @@ impl Simulation {
         let [next_sample, steps, events, stiff, unproved] = from.numbers(Some(5))?[..] else { return Err(NotSaved) };
         let [t, segment, end, inside, last_step] = from.numbers(Some(5))?[..] else { return Err(NotSaved) };
         let [stored_at_start, energy_scale] = from.numbers(Some(2))?[..] else { return Err(NotSaved) };
+        if !engine.restore_heat(&from.numbers(None)?) {
+            return Err(NotSaved);
+        }
         new.told = from.text()?;
         let outcome = from.text()?;
         if !from.0.is_empty() || !t.is_finite() {
