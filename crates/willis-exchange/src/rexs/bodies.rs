@@ -38,11 +38,9 @@ impl Bodies {
         let components = &account.document.components;
         let mut by_id = HashMap::new();
         for (k, c) in components.iter().enumerate() {
-            if by_id.contains_key(&c.id) {
+            if *by_id.entry(c.id).or_insert(k) != k {
                 let message = "another component has this number; references mean the first";
                 account.problem(account.called(At::model(k)), message);
-            } else {
-                by_id.insert(c.id, k);
             }
         }
         let parent = (0..components.len()).collect();

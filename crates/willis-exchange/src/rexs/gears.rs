@@ -1,5 +1,6 @@
 //! Gears and the stages in which they mesh.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use willis::geometry::involute;
@@ -184,9 +185,9 @@ impl Gearing {
         let mut reader = Reader { bodies, frame, outward, flanks, materials };
         stages.retain(|stage| {
             let mut read = |k: usize| -> bool {
-                if !gears.contains_key(&k) {
+                if let Entry::Vacant(place) = gears.entry(k) {
                     let Some(gear) = reader.gear(account, k) else { return false };
-                    gears.insert(k, gear);
+                    place.insert(gear);
                 }
                 true
             };

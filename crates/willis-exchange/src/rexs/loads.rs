@@ -46,6 +46,9 @@ struct Source {
     member: String,
 }
 
+/// What acts on a terminal: what is given first has the lowest rank; a power in kW (true) or a torque in N m, if known.
+type OnTerminal = (u8, MemberId, String, Option<(bool, f64)>);
+
 pub struct Loads {
     pub terminals: Vec<String>,
     speeds: Vec<Source>,
@@ -222,8 +225,7 @@ impl Loads {
                 None => speeds.push((defines.unwrap_or(false), member, source.member.clone(), speed)),
             }
         }
-        // Unknown, or a torque in N m, or a power in kW.
-        let mut loads: Vec<(u8, MemberId, String, Option<(bool, f64)>)> = vec![];
+        let mut loads: Vec<OnTerminal> = vec![];
         for name in &self.terminals {
             let Some(member) = train.member(name) else { continue };
             let mut sum: Option<(bool, f64)> = None;

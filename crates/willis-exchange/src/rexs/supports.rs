@@ -48,6 +48,9 @@ pub fn type_of(kind: Kind) -> Option<&'static str> {
     KINDS.iter().find(|(_, own)| Kind::named(own) == Some(kind)).map(|(theirs, _)| *theirs)
 }
 
+/// Members, designation, position and component: what bearings that are alike have in common.
+type Likeness = (Vec<String>, Option<String>, Option<u64>, usize);
+
 /// Bearings that are alike.
 struct Group {
     component: usize,
@@ -68,7 +71,7 @@ pub fn bearings(
     frame: &Frame,
 ) -> (String, Vec<BearingReport>, usize) {
     let document = account.document;
-    let mut groups: BTreeMap<(Vec<String>, Option<String>, Option<u64>, usize), Group> = BTreeMap::new();
+    let mut groups: BTreeMap<Likeness, Group> = BTreeMap::new();
     let mut ideal = 0;
     let mut seen = vec![false; document.components.len()];
     for relation in document.relations.iter().filter(|r| r.kind == "side") {

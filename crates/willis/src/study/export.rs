@@ -254,6 +254,9 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
     Ok(complete(model, done, found.comment, &trial))
 }
 
+/// Files, and what a reader must know of them.
+pub type FilesAndNotes = (Vec<ExportedFile>, Vec<String>);
+
 /// Exports a train in a format that stands elsewhere. `write` gives the files and notes of a train, and is also asked for
 /// trains with other values, which shows what is not carried over: whether it is such a trial is its second argument.
 /// `comment` is what begins and ends a comment in the format.
@@ -284,7 +287,7 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
 pub fn export_with(
     model: &Model,
     comment: [&str; 2],
-    write: &dyn Fn(&Train, bool) -> Result<(Vec<ExportedFile>, Vec<String>), Diagnostics>,
+    write: &dyn Fn(&Train, bool) -> Result<FilesAndNotes, Diagnostics>,
 ) -> Result<Export, Diagnostics> {
     let (files, notes) = write(model.train(), false)?;
     let trial = |train: &Train| Some(write(train, true).ok()?.0.into_iter().map(|f| f.text).collect());
