@@ -196,11 +196,11 @@ UNITS = "_rad_s2 _n_per_m _rad_s _kg_m3 _kg_m2 _m2_s _n_m _m_s _rad _pa _hz _w _
 
 def extension() -> Any:
     """The built extension, without the package around it."""
-    candidates = sorted(PACKAGE.glob("_willis*.so")) + sorted(PACKAGE.glob("_willis*.pyd"))
-    if not candidates:
-        from willis import _willis
-
-        return _willis
+    # That of the checkout, or of the package that is installed, which is not run: what it imports may be written only now.
+    installed = importlib.util.find_spec("willis")
+    folders = [PACKAGE, *map(Path, (installed and installed.submodule_search_locations) or [])]
+    candidates = [file for folder in folders for end in ("so", "pyd") for file in sorted(folder.glob(f"_willis*.{end}"))]
+    assert candidates, "the extension is not built"
     spec = importlib.util.spec_from_file_location("_willis", candidates[0])
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)

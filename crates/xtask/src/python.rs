@@ -65,8 +65,9 @@ fn test(context: &Context, venv: &Path, wheels: &Path) -> Result<(), String> {
     let wheel = wheel.ok_or("maturin made no wheel")?;
     let size = fs::metadata(&wheel).map_err(|e| e.to_string())?.len();
     println!("{}: {:.1} MB", wheel.display(), size as f64 / 1e6);
-    if size > 15_000_000 {
-        return Err("the wheel is larger than 15 MB".into());
+    // Without link-time optimisation, which the published one has.
+    if size > 16_500_000 {
+        return Err("the wheel is larger than 16.5 MB".into());
     }
     let mut pip = of(context, venv, "pip");
     passes(pip.args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel), "pip install of the wheel")?;

@@ -3941,7 +3941,7 @@ class FormulaOneFormula(Record):
         """The state of the shift table, or ``as drawn``."""
     @property
     def regimes(self) -> list[str]:
-        """Regimes in which it holds (two or more freedoms)."""
+        """Regimes in which it holds (two or more degrees of freedom)."""
     @property
     def inputs(self) -> list[str]:
         """Terminals where power enters."""
@@ -4290,6 +4290,58 @@ class SimulateEnergyReport(Record):
     def efficiency(self) -> float | None:
         """Out over in, where anything came in and nothing is stored beside it; else ``None``."""
 
+class SimulateMotionHeat(Record):
+    """Temperatures of a run, and where the heat went: ``made = carried away + stored``."""
+    @property
+    def start_k(self) -> Named[float]:
+        """Temperature of each place at the start, K."""
+    @property
+    def start(self) -> Named[float]: ...
+    @property
+    def end_k(self) -> Named[float]:
+        """Temperature of each place at the end, K."""
+    @property
+    def end(self) -> Named[float]: ...
+    @property
+    def highest_oil_k(self) -> float:
+        """Highest oil temperature, K."""
+    @property
+    def highest_oil(self) -> float: ...
+    @property
+    def limit_k(self) -> float:
+        """Highest oil temperature that the train allows, K."""
+    @property
+    def limit(self) -> float: ...
+    @property
+    def beyond_limit_s(self) -> float | None:
+        """When the oil first went beyond it, s."""
+    @property
+    def beyond_limit(self) -> float | None: ...
+    @property
+    def made_j(self) -> float:
+        """Heat made by losses and by what the network has beside them, J."""
+    @property
+    def made(self) -> float: ...
+    @property
+    def carried_j(self) -> float:
+        """Heat carried away, J."""
+    @property
+    def carried(self) -> float: ...
+    @property
+    def stored_j(self) -> float:
+        """Heat stored in oil and parts, J."""
+    @property
+    def stored(self) -> float: ...
+    @property
+    def elsewhere_j(self) -> float:
+        """Lost outside the gearbox, in parts that are cooled elsewhere or belong to no mesh, shift element or
+        terminal, J."""
+    @property
+    def elsewhere(self) -> float: ...
+    @property
+    def residual(self) -> float:
+        """Heat made less what was carried away and stored, over the heat made."""
+
 class SimulateLimitExceeded(Record):
     """A limit of a variator that a run exceeds, where it does so by most among the ends of its steps."""
     @property
@@ -4367,6 +4419,9 @@ class SimulateAnswer(_answer.Simulation):
     @property
     def energy(self) -> SimulateEnergyReport | None:
         """Where the energy went; nothing where it was not counted, or is no longer finite."""
+    @property
+    def heat(self) -> SimulateMotionHeat | None:
+        """Temperatures, where the train says what carries its heat away and steps are adapted."""
     @property
     def beyond_limits(self) -> list[SimulateLimitExceeded]:
         """Limits of variators that the run exceeds."""
@@ -6783,8 +6838,8 @@ class DrawTimePanel(Record):
     def quantity(self) -> str:
         """Its heading: ``Speed``."""
     @property
-    def unit(self) -> Literal["", "s", "rad/s", "rad", "rad/s^2", "N m", "W", "J"]:
-        """SI."""
+    def unit(self) -> Literal["", "s", "rad/s", "rad", "rad/s^2", "N m", "W", "J", "K", "degC"]:
+        """SI; of temperatures °C."""
     @property
     def lines(self) -> list[DrawTimeLine]:
         """The curves, in the order of the columns."""
@@ -7380,6 +7435,171 @@ class ExportAnswer(Answer):
     @property
     def kinds(self) -> list[ExportOneKind]:
         """The kinds there are, where no kind was named."""
+
+class ImportCounts(Record):
+    """Sums of what a file has and what became of it."""
+    @property
+    def components(self) -> int:
+        """Components of the model."""
+    @property
+    def attributes(self) -> int:
+        """Attributes, those of load cases too."""
+    @property
+    def used(self) -> int:
+        """Attributes that are in the train file, or from which something in it follows."""
+    @property
+    def left_out(self) -> int:
+        """Attributes that the train file has no place for."""
+    @property
+    def unusable(self) -> int:
+        """Attributes that would have been used, with values that cannot be."""
+    @property
+    def ideal_supports(self) -> int:
+        """Supports without dimensions, which have no friction."""
+
+class ImportGuess(Record):
+    """Something that the file does not say and the train file does."""
+    @property
+    def of(self) -> str:
+        """What it is about."""
+    @property
+    def taken(self) -> str:
+        """What was taken."""
+    @property
+    def because(self) -> str:
+        """Why."""
+
+class ImportMissing(Record):
+    """What Willis could use and the file does not have."""
+    @property
+    def what(self) -> str:
+        """What."""
+    @property
+    def so(self) -> str:
+        """What follows from that."""
+
+class ImportProblem(Record):
+    """Something that is wrong or odd about the file and did not stop its reading."""
+    @property
+    def place(self) -> str:
+        """Where: a component, a relation, a line."""
+    @property
+    def message(self) -> str:
+        """What, and what was done."""
+
+class ImportBearingReport(Record):
+    """A rolling bearing of the file."""
+    @property
+    def name(self) -> str:
+        """What it is called in the train file."""
+    @property
+    def designation(self) -> str | None:
+        """Its designation, where the file gives one."""
+    @property
+    def count(self) -> int:
+        """How many of them are alike, at each planet on planets."""
+    @property
+    def carried(self) -> bool:
+        """Whether it is in the train file; if not, its dimensions are missing there and it stands in a comment."""
+
+class ImportColumn(Record):
+    """A column of a load spectrum."""
+    @property
+    def name(self) -> str:
+        """What it is: ``sun.speed [rpm]``."""
+    @property
+    def value(self) -> float:
+        """Its value."""
+
+class ImportLoadCaseReport(Record):
+    """A load case of the file and the operation that it became."""
+    @property
+    def load_case(self) -> int | None:
+        """Its number in the file; none for a file without load cases."""
+    @property
+    def operation(self) -> str | None:
+        """The name of the operation; none if the case is left out, as the problems tell."""
+    @property
+    def share(self) -> float | None:
+        """Its part of the operating time, where the file gives it."""
+    @property
+    def columns(self) -> list[ImportColumn]:
+        """Speed of the first driven shaft, rpm, and torque on it, N m, or power, kW: the row of a load spectrum."""
+
+class ImportAttributeReport(Record):
+    """An attribute of the file and what became of it."""
+    @property
+    def load_case(self) -> int | None:
+        """The load case that it stands in, by its number; none in the model itself."""
+    @property
+    def component(self) -> int:
+        """Number of the component."""
+    @property
+    def type(self) -> str:
+        """Its type: ``cylindrical_gear``."""
+    @property
+    def attribute(self) -> str:
+        """Name of the attribute: ``normal_module``."""
+    @property
+    def value(self) -> str:
+        """Its value, shortened."""
+    @property
+    def unit(self) -> str:
+        """Its unit, as it is written."""
+    @property
+    def fate(self) -> Literal["used", "left-out", "unusable"]:
+        """What became of it."""
+    @property
+    def why(self) -> str:
+        """What it was used for; or why it cannot be used. Empty if it is left out."""
+
+class ImportReport(Record):
+    """What was read and what was not."""
+    @property
+    def version(self) -> str:
+        """The version that the file says it has."""
+    @property
+    def application(self) -> str:
+        """The program that wrote it."""
+    @property
+    def counts(self) -> ImportCounts:
+        """Sums."""
+    @property
+    def guessed(self) -> list[ImportGuess]:
+        """What is not in the file and had to be assumed."""
+    @property
+    def missing(self) -> list[ImportMissing]:
+        """What Willis could use and the file does not have."""
+    @property
+    def problems(self) -> list[ImportProblem]:
+        """What is wrong or odd about the file, and what was done."""
+    @property
+    def more_problems(self) -> int:
+        """Problems beyond those that are listed."""
+    @property
+    def bearings(self) -> list[ImportBearingReport]:
+        """Bearings with dimensions or a designation."""
+    @property
+    def load_cases(self) -> list[ImportLoadCaseReport]:
+        """Load cases and the operations that they became."""
+    @property
+    def attributes(self) -> list[ImportAttributeReport]:
+        """Every attribute and what became of it."""
+
+class ImportAnswer(Answer):
+    """A train file, and what became of the file that it was made from."""
+    @property
+    def format(self) -> Literal["willis-import-1"]:
+        """``willis-import-1``."""
+    @property
+    def file(self) -> str:
+        """The name of the file that was read."""
+    @property
+    def toml(self) -> str:
+        """The train file."""
+    @property
+    def report(self) -> ImportReport:
+        """What was read, what was assumed, what is missing."""
 
 class LawsSymbol(Record):
     """A symbol and its SI unit."""

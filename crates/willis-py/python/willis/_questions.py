@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from . import _contracts as contracts
     from ._train import Train
 
-__all__ = ["new", "design", "schemes", "laws", "validate", "explain"]
+__all__ = ["new", "design", "schemes", "import_", "laws", "validate", "explain"]
 
 
 class Questions:
@@ -215,7 +215,7 @@ class Questions:
         yes: bool = False,
         progress: bool | Progress | None = None,
     ) -> "contracts.LossesAnswer":
-        """Tell where every watt goes, at a few speeds, loads and temperatures, or law beside law.
+        """List losses by source at a few speeds, loads and temperatures, or compare loss laws.
 
         Starts from the operations of the file. Loads stay as the file gives them (a torque stays that torque, a
         power that power) unless powers or torques vary them.
@@ -269,7 +269,7 @@ class Questions:
         yes: bool = False,
         progress: bool | Progress | None = None,
     ) -> "contracts.HeatAnswer":
-        """Tell how warm the gearbox gets: oil temperature, parts, warm-up, thermal rating, duty cycles.
+        """Compute how warm the gearbox gets: oil temperature, parts, warm-up, thermal rating, duty cycles.
 
         The oil temperature is the one at which the losses and what ``[heat]`` carries away agree, with the reason
         why there is no other, or all of them with their stability, or none below the limit. The thermal rating is
@@ -320,11 +320,11 @@ class Questions:
         yes: bool = False,
         progress: bool | Progress | None = None,
     ) -> "contracts.SensitivityAnswer":
-        """Rank the inputs by what they do to efficiency and losses: which loss to attack first.
+        """Rank the inputs by their effect on efficiency and losses: what to change first.
 
-        Exact derivatives (no differences are taken) of efficiency, of all losses and of each loss by every
-        continuous quantity of the file and of the operation, for a step of one percent (1 K, 1 degree, 0.01 of a
-        profile shift); and how far the point is from another driving end and from locking.
+        Derivatives by automatic differentiation of efficiency, of all losses and of each loss by every continuous
+        quantity of the file and of the operation, for a step of one percent (1 K, 1 degree, 0.01 of a profile
+        shift); and how far the point is from a change of the driving gear and from locking.
 
         Parameters
         ----------
@@ -367,7 +367,7 @@ class Questions:
         yes: bool = False,
         progress: bool | Progress | None = None,
     ) -> "contracts.UncertaintyAnswer":
-        """Tell how sure a number is: its distribution when quantities are uncertain, and what dominates it.
+        """Compute the uncertainty of efficiency and losses: their distribution, and which input dominates it.
 
         Quantities are those of the train file and of the operation. Distributions: ``0.98..0.99`` (equally likely),
         ``+-5%`` about the file's value, ``normal(0.4 um, 0.05 um)`` and ``lognormal(0.4 um, 1.3)`` (both cut off at
@@ -490,7 +490,7 @@ class Questions:
     ) -> "contracts.SweepAnswer":
         """Evaluate a train at many points: maps, trends, every gear at once.
 
-        Any quantity of the train file or of the operating point can vary, along as many axes as wanted:
+        Any quantity of the train file or of the operating point can vary, along any number of axes:
 
         ::
 
@@ -500,11 +500,11 @@ class Questions:
 
               over=["state=all", "P1.planet.count=3,4,6", "oil.temperature=20..100 degC:9"]
 
-        A range may end with ``:100`` for so many values, both ends included, with ``:31:log`` for so many at a
-        constant ratio, or with ``:step 500 rpm`` for one every so much. Torque and power of ``input`` and
-        ``output`` are positive where they drive; of a member called by its name they are those ON it, as in the
-        train file. Every point is that of ``analyze``; a point that is locked or has several solutions is a row
-        that says so.
+        ``500..12000 rpm:100`` is 100 evenly spaced values, both ends included; ``:31:log`` is 31 values with a
+        constant ratio; ``:step 500 rpm`` is a value every 500 rpm. Torque and power of ``input`` and ``output`` are
+        positive driving and negative coasting; of a member called by its name they are those on it, as in the train
+        file. Every point is that of ``analyze``; a point that is locked or has several solutions is a row that says
+        so.
 
         Parameters
         ----------
@@ -561,13 +561,13 @@ class Questions:
         yes: bool = False,
         progress: bool | Progress | None = None,
     ) -> "contracts.CycleAnswer":
-        """Tell what a duty cycle or a load spectrum costs: energies by source, state and direction, the worst rows.
+        """Compute the energy lost over a duty cycle or load spectrum: by source, state and direction, the worst rows.
 
         Each row of the profile, a CSV file, is one operating condition. A column weighs the rows in time: ``time
         [s]`` of a trace (each row holds until the next), or ``duration [s]``, ``hours`` or ``share`` of a spectrum.
         The other columns set quantities, with the unit in the header: ``input.speed [rpm]``, ``output.torque [N
-        m]``, ``oil.temperature [degC]``, state, or any quantity of the train file. Rows without an answer are told
-        with their reason, and the energies say which part of the time they cover.
+        m]``, ``oil.temperature [degC]``, state, or any quantity of the train file. Rows without an answer are
+        listed with their reason, and *coverage* is the part of the time that the energies hold for.
 
         Parameters
         ----------
@@ -618,7 +618,7 @@ class Questions:
 
         Keys that differ come first, then states and operations by the size of their differences, then in a line
         what is equal. Operations of one name that prescribe different things are compared and marked. With ``over``
-        the same axes are applied to every variant: where which is better, and by how much.
+        the same axes are applied to every variant: which is better where, and by how much.
 
         Parameters
         ----------
@@ -666,7 +666,7 @@ class Questions:
         """List every regime of a train: who drives whom, in which speeds, with which formula.
 
         For two and more degrees of freedom: the regions of speed, the signs of the torques, inputs and outputs, the
-        driving ends, the closed formula of efficiency and loss, the boundaries and what changes across them, and
+        driving gears, the closed formula of efficiency and loss, the boundaries and what changes across them, and
         which assignments of inputs and outputs cannot be reached. For one degree of freedom: driving and coasting
         of every state with its formula.
 
@@ -781,7 +781,7 @@ class Questions:
         yes: bool = False,
         progress: bool | Progress | None = None,
     ) -> "contracts.LocateAnswer":
-        """Tell in which regime an operating point lies, how far each boundary is and what changes there.
+        """Find the regime of an operating point, how far each boundary is and what changes there.
 
         Works for trains of any size: it looks at this one point.
 
@@ -843,7 +843,7 @@ class Questions:
         """Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
 
         A run that jams, has several solutions or ends otherwise before the scenario is an answer, and the outcome
-        says so. Ctrl-C ends the run where it is. In both cases what was computed is written and told.
+        says so. Ctrl-C ends the run where it is. In both cases Willis writes and prints what was computed.
 
         Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes are 1 forward,
         -1 backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line that begins with ``# `` and
@@ -853,7 +853,7 @@ class Questions:
         Parameters
         ----------
         scenario
-            The scenario; needed where the file has several.
+            The scenario; required if the file has several.
         columns
             Only these columns in rows and figure, by kind (speed, torque, mode, ...) or by name.
         samples
@@ -866,13 +866,13 @@ class Questions:
         tolerance
             Relative tolerance of speeds and angles, from 1e-13 to 1e-2 [default: 1e-10].
         fixed_step
-            Advance in steps of this length, each of bounded cost: '1 ms'.
+            Use fixed time steps of this length (real time): '1 ms'.
         lagged_forces
             Take the sign of each tooth force from the step before, as in Galvagno 2010, to show the error of that.
         continue_when_ambiguous
-            Where several motions are possible, go on with one of them.
+            Where several motions are possible, continue with the first.
         most_events
-            The most changes of mode within a thousandth of the scenario [default: 1000].
+            Stop after so many stick-slip changes within a thousandth of the scenario [default: 1000].
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
@@ -1078,7 +1078,7 @@ class Questions:
 
     def export(
         self,
-        kind: Literal["csv", "vecto", "modelica-loss-table", "modelica", "simscape", "mujoco", "drake", "openfast", "list"] | None = None,
+        kind: Literal["csv", "vecto", "modelica-loss-table", "modelica", "simscape", "mujoco", "drake", "openfast", "rexs", "list"] | None = None,
         *,
         state: str | None = None,
         all_states: bool | None = None,
@@ -1092,10 +1092,10 @@ class Questions:
     ) -> "contracts.ExportAnswer":
         """Write loss maps, efficiency tables, models and actuator blocks for other programs.
 
-        Without a kind it lists the kinds. Numbers are those of ``analyze``, at every point of the ranges; without
-        ranges they are taken from the operations of the file, and told. What a format cannot say (a lock, several
-        solutions, a dependence on load) stands in the comments of the file and among the notes; a point without an
-        answer gets no number.
+        Without a kind it lists the kinds. Numbers are those of ``analyze``, at every point of the ranges. Without
+        ranges Willis takes them from the operating points of the file and prints them. What a format cannot say (a
+        lock, several solutions, a dependence on load) stands in the comments of the file and among the notes; a
+        point without an answer gets no number.
 
         Parameters
         ----------
@@ -1188,7 +1188,9 @@ def design(
     top: int | None = None,
     sort: str | None = None,
     all: bool | None = None,
+    recompute: int | None = None,
     write: Sequence[int] | None = None,
+    teeth: Sequence[str] | str | None = None,
     shard: str | None = None,
     resume: Sequence[str | os.PathLike[str] | object] | None = None,
     threads: int | None = None,
@@ -1204,7 +1206,7 @@ def design(
 
     Without a file, a kind of drive with its ratio will do: ``kind`` with ``ratio``, perhaps ``ring``. With ``like``
     a train of your own is marked among the rows; without a file it is also where the search begins. With ``write``
-    rows are train files for every other command.
+    rows are train files for every other command; with ``teeth`` so are tooth numbers, without a search.
 
     Parameters
     ----------
@@ -1213,7 +1215,7 @@ def design(
     like
         A train that exists: a row of its own. Without FILE, trains with its connections, ratios and rings are searched.
     kind
-        Without a file: the kind of drive, simple, two-stage or 3k.
+        Without a file: the kind of drive, simple, two-stage, 3k, stepped, two-rings or ravigneaux.
     ratio
         Of ``kind``: the ratio, a number or low..high.
     tolerance
@@ -1235,8 +1237,15 @@ def design(
         Default: the first objective of the file.
     all
         Rows of all trains that satisfy the wish, not only of those that no other one beats.
+    recompute
+        Compute so many trains at most with the laws of friction of the file, in its operations, so that these laws rank
+        them: all trains where there are no more, else those that no other one beats. With 0 mesh efficiencies rank.
+        Default: 500.
     write
         Give these rows as train files, by their numbers: 3, or 1,2,5 into a folder.
+    teeth
+        Give the train with these teeth as a train file, without a search: 12/47/105/40/99 as in a row, of several sets
+        20/12/44,22/13/48.
     shard
         Search only a part of the space: 2/8 is the second of eight.
     resume
@@ -1258,7 +1267,7 @@ def design(
         _ask(
             "design",
             [],
-            {"file": file, "like": like, "kind": kind, "ratio": ratio, "tolerance": tolerance, "ring": ring, "module": module, "planets": planets, "forward": forward, "backward": backward, "top": top, "sort": sort, "all": all, "write": write, "shard": shard, "resume": resume},
+            {"file": file, "like": like, "kind": kind, "ratio": ratio, "tolerance": tolerance, "ring": ring, "module": module, "planets": planets, "forward": forward, "backward": backward, "top": top, "sort": sort, "all": all, "recompute": recompute, "write": write, "teeth": teeth, "shard": shard, "resume": resume},
             threads=threads,
             yes=yes,
             progress=progress,
@@ -1401,6 +1410,52 @@ def schemes(
     )
 
 
+def import_(
+    file: str | os.PathLike[str] | object | None = None,
+    *,
+    convention: str | None = None,
+    threads: int | None = None,
+    yes: bool = False,
+    progress: bool | Progress | None = None,
+) -> "contracts.ImportAnswer":
+    """Read a gearbox of another program: a REXS file becomes a train file.
+
+    REXS 1.0 to 1.6, as XML (.rexs), JSON (.rexsj) or zip (.rexsz): cylindrical and planetary stages, gears with
+    their geometry, bearings, lubricant, shift elements and load cases. The train file begins with what was assumed
+    and what is missing; as text the answer is an account of every attribute: used, left out or unusable. A broken
+    file is read as far as it goes. Worm and bevel stages are refused.
+
+    Parameters
+    ----------
+    file
+        The file of the other program, or - for standard input.
+    convention
+        Sign of the profile shifts of ring gears in the file: din (positive inward, as REXS says) or outward. Default:
+        din.
+    threads, yes, progress
+        Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+        called with a word, how much is done and how much there is.
+
+    Examples
+    --------
+    >>> found = willis.import_("examples/planetary-stage.rexs")
+    >>> train = willis.Train(found.files("train").popitem()[1].decode())
+    >>> len(train.analyze().data.operations)
+    2
+    """
+    return cast(
+        "contracts.ImportAnswer",
+        _ask(
+            "import",
+            [],
+            {"file": file, "convention": convention},
+            threads=threads,
+            yes=yes,
+            progress=progress,
+        ),
+    )
+
+
 def laws(
     family: Literal["mesh_friction", "rolling", "loss_factor", "load_sharing", "film", "film_reduction", "bearing", "windage", "churning", "seal", "rotor_drag", "clutch_drag", "pump", "injection", "plain_bearing"] | None = None,
     *,
@@ -1443,7 +1498,7 @@ def laws(
 
 
 def validate(
-    case: Literal["wang-2020", "losses", "galvagno"] | None = None,
+    case: Literal["wang-2020", "losses", "galvagno", "design"] | None = None,
     *,
     threads: int | None = None,
     yes: bool = False,
