@@ -121,6 +121,7 @@ const FIGURES: &[(&str, &[&str])] = &[
             "--plot",
         ],
     ),
+    ("book/src/figures/launch-run.svg", &["draw", "time", "examples/launch.toml", "--theme", "auto", "-o"]),
     ("book/src/figures/launch-modes.svg", &["modes", "examples/launch.toml", "--state", "clutch closed", "--plot"]),
     (
         "book/src/figures/8hp70-stick.svg",
