@@ -310,8 +310,8 @@ fn settled(
     };
     // First without bearings, then without the forms of teeth.
     let without_bearings = body.replace(bearings, "");
-    let plain: String =
-        body.lines().filter(|line| !line.starts_with("geometry = ")).map(|line| format!("{line}\n")).collect();
+    let is_geometry = |line: &str| line.split_once(" = ").is_some_and(|(key, _)| key == "geometry");
+    let plain: String = body.lines().filter(|line| !is_geometry(line)).map(|line| format!("{line}\n")).collect();
     for (what, text) in [("the bearings", without_bearings), ("the geometry of the teeth", plain)] {
         if let Ok(model) = Model::from_toml(&format!("{head}{text}")) {
             for d in wrong.iter().take(20) {

@@ -74,8 +74,8 @@ fn reader(context: &Context, folder: &Path) -> Result<(), String> {
     for file in example_files(context)? {
         fs::copy(context.root.join(&file), folder.join(&file)).map_err(fail)?;
     }
-    // Profiles stand beside the trains, design files in a folder of theirs.
-    for (place, ending) in [("examples", "csv"), ("examples/design", "toml")] {
+    // Profiles and files of other programs stand beside the trains, design files in a folder of theirs.
+    for (place, ending) in [("examples", "csv"), ("examples", "rexs"), ("examples/design", "toml")] {
         for entry in fs::read_dir(context.root.join(place)).map_err(fail)? {
             let file = entry.map_err(fail)?.path();
             if let (Some(name), true) = (file.file_name(), file.extension().is_some_and(|e| e == ending)) {

@@ -76,7 +76,7 @@ pub(super) fn closed(text: &str) -> CString {
 pub(super) fn folder(text: &str) -> Result<PathBuf, Fail> {
     let Some(rest) = text.strip_prefix("file:") else { return Ok(PathBuf::from(text)) };
     // file:/a, file:///a, file://host/a
-    let path = match rest.strip_prefix("//") {
+    let path = match rest.strip_prefix(['/']).and_then(|rest| rest.strip_prefix(['/'])) {
         Some(rest) => &rest[rest.find('/').unwrap_or(rest.len())..],
         None => rest,
     };
