@@ -140,7 +140,7 @@ impl Attachment {
     ///
     /// let zip = Attachment::holding("x.zip", b"PK\x03\x04\xff");
     /// assert_eq!(zip.text, "data:;base64,UEsDBP8=");
-    /// assert_eq!(zip.bytes().unwrap(), b"PK\x03\x04\xff");
+    /// assert_eq!(*zip.bytes().unwrap(), b"PK\x03\x04\xff"[..]);
     /// assert_eq!(Attachment::holding("x.txt", b"text").text, "text");
     /// ```
     pub fn holding(name: impl Into<String>, bytes: &[u8]) -> Self {
