@@ -113,6 +113,7 @@ const VALIDATION: &[(&str, &str)] = &[
     ("Wang 2020, table by table", "validation/wang-2020/report.md"),
     ("Galvagno 2010", "validation/galvagno/README.md"),
     ("Modelica", "validation/modelica/README.md"),
+    ("Searches for trains", "validation/design/README.md"),
     ("How the enumerations were made", "validation/reference/README.md"),
 ];
 
