@@ -992,6 +992,21 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
     if !without.is_empty() {
         all.push(format!("{}: no constants of the SKF model, `palmgren` stands in", without.join(", ")));
     }
+    // Teeth whose forces on bearings are not worked out.
+    let silent = |m: &&crate::train::Mesh| m.teeth.as_ref().is_none_or(|t| t.cones.is_some());
+    let beside = |b: &&crate::train::BearingMount| {
+        let gear = |m: &crate::train::Mesh| {
+            m.gears.iter().any(|g| b.members.contains(&g.member) && g.member != crate::train::FRAME)
+        };
+        b.radial_load == 0.0 && b.axial_load == 0.0 && train.meshes.iter().filter(silent).any(gear)
+    };
+    let unloaded: Vec<&str> = train.bearings.iter().filter(beside).map(|b| b.name.as_str()).collect();
+    if !unloaded.is_empty() {
+        all.push(format!(
+            "{}: no load by bevel teeth, or by a mesh whose geometry is not given: give `radial_load`",
+            unloaded.join(", ")
+        ));
+    }
     if train.bearings.iter().any(shallow) {
         all.push("bearings without an oil level: a low bath, no drag of oil".into());
     }

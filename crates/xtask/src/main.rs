@@ -6,6 +6,7 @@
 mod bench;
 mod book;
 mod context;
+mod environment;
 mod examples;
 mod fmu;
 mod fuzz;

@@ -1,10 +1,11 @@
 //! The Python package: built as a wheel, installed where nothing else is, and tested there.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::context::{Context, passes};
+use crate::environment::Environment;
 use crate::step::{Outcome, outcome};
 
 /// What tests and type checkers need beside the package. NumPy comes with it.
@@ -15,49 +16,27 @@ const CRATE: &str = "crates/willis-py";
 
 /// Builds the wheel, installs it and runs what is written for it.
 pub(crate) fn python(context: &Context) -> Outcome {
-    let (venv, wheels) = (venv(context), context.target.join("python/wheels"));
-    if let Err(why) = install(context, &venv) {
+    let (environment, wheels) = (environment(context), context.target.join("python/wheels"));
+    if let Err(why) = environment.install(context) {
         return Outcome::Skipped(why);
     }
-    outcome(test(context, &venv, &wheels))
+    outcome(test(context, &environment, &wheels))
 }
 
-/// The environment.
-fn venv(context: &Context) -> PathBuf {
-    context.target.join("python/venv")
-}
-
-/// An environment with the tools: what makes it, and what fills it. Both do nothing where that is done.
-fn tools(context: &Context, venv: &Path) -> [Command; 2] {
-    let mut make = context.words("python3 -m venv");
-    make.arg(venv);
-    let mut pip = of(context, venv, "pip");
-    pip.args(["install", "--quiet", "--disable-pip-version-check"]).args(TOOLS.split_whitespace());
-    [make, pip]
+/// Its environment.
+fn environment(context: &Context) -> Environment {
+    Environment::new(context, "python/venv", TOOLS)
 }
 
 /// What can be fetched before.
 pub(crate) fn builds(context: &Context) -> Vec<Command> {
-    tools(context, &venv(context)).into()
+    environment(context).commands(context).into()
 }
 
-fn install(context: &Context, venv: &Path) -> Result<(), String> {
-    let [mut make, mut pip] = tools(context, venv);
-    passes(&mut make, "python3 -m venv")?;
-    passes(&mut pip, "pip install").map_err(|why| format!("packages cannot be had: {why}"))
-}
-
-/// A program of an environment, run in the root of the repository.
-fn of(context: &Context, venv: &Path, program: &str) -> Command {
-    let mut command = Command::new(venv.join("bin").join(program));
-    command.current_dir(&context.root).env_remove("PYTHONPATH");
-    command
-}
-
-fn test(context: &Context, venv: &Path, wheels: &Path) -> Result<(), String> {
+fn test(context: &Context, environment: &Environment, wheels: &Path) -> Result<(), String> {
     let _ = fs::remove_dir_all(wheels);
     let manifest = format!("{CRATE}/Cargo.toml");
-    let mut build = of(context, venv, "maturin");
+    let mut build = environment.program(context, "maturin");
     build.env("WILLIS_WHEEL", "1");
     build.args(["build", "--quiet", "--manifest-path", &manifest, "--out"]).arg(wheels);
     passes(&mut build, "maturin build")?;
@@ -69,21 +48,21 @@ fn test(context: &Context, venv: &Path, wheels: &Path) -> Result<(), String> {
     if size > 16_500_000 {
         return Err("the wheel is larger than 16.5 MB".into());
     }
-    let mut pip = of(context, venv, "pip");
+    let mut pip = environment.program(context, "pip");
     passes(pip.args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel), "pip install of the wheel")?;
     let script = |name: &str| format!("{CRATE}/{name}");
-    let mut check = of(context, venv, "python");
+    let mut check = environment.program(context, "python");
     passes(check.arg(script("generate.py")).arg("--check"), "generate.py --check")?;
-    let mut mypy = of(context, venv, "mypy");
+    let mut mypy = environment.program(context, "mypy");
     mypy.args(["--strict", "--config-file"]).args(["pyproject.toml", "python/willis", "tests/typed.py"].map(script));
-    let mut pyright = of(context, venv, "pyright");
-    pyright.arg("--pythonpath").arg(venv.join("bin/python")).args(["--project", CRATE]);
+    let mut pyright = environment.program(context, "pyright");
+    pyright.arg("--pythonpath").arg(environment.python()).args(["--project", CRATE]);
     // Types are checked beside the tests; what that prints comes after what they print.
     std::thread::scope(|scope| {
         let types = scope.spawn(|| -> Result<Vec<Output>, String> {
             [&mut mypy, &mut pyright].into_iter().map(|c| context.output(c)).collect()
         });
-        let mut pytest = of(context, venv, "python");
+        let mut pytest = environment.program(context, "python");
         pytest.args(["-m", "pytest", "--quiet", "-p", "no:cacheprovider"]).arg(script("tests"));
         let tested = passes(&mut pytest, "pytest");
         let types = types.join().map_err(|_| "the check of types ended early".to_owned())?;

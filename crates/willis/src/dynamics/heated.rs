@@ -37,10 +37,14 @@ impl Engine {
     }
 
     /// Lets the temperatures follow up to a time that was reached, where it is time to. Whether the laws have changed.
-    pub fn follow_heat(&mut self, t: f64, x: &[f64]) -> bool {
+    ///
+    /// # Errors
+    /// In words, where the network has no temperatures there.
+    pub fn follow_heat(&mut self, t: f64, x: &[f64]) -> Result<bool, String> {
         let states = self.states();
-        let Some(warming) = self.warming.as_mut().filter(|w| w.is_due(t, &x[states..])) else { return false };
-        warming.follow(t, &x[states..]);
-        self.warm_laws()
+        let Some(warming) = self.warming.as_mut().filter(|w| w.is_due(t, &x[states..])) else { return Ok(false) };
+        let followed = warming.follow(t, &x[states..]);
+        followed.map_err(|_| format!("at t = {t} s the thermal network of [heat] has no finite temperatures"))?;
+        Ok(self.warm_laws())
     }
 }

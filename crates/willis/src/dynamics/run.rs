@@ -584,10 +584,12 @@ impl Simulation {
                 }
                 self.shorten(target);
                 self.take_state(target);
-                self.engine.follow_heat(self.t, &self.x);
                 self.rolling = false;
                 self.why = None;
-                return Stretch::Reached;
+                return match self.engine.follow_heat(self.t, &self.x) {
+                    Ok(_) => Stretch::Reached,
+                    Err(why) => Stretch::Ended(Outcome::NotConverged(why)),
+                };
             }
             if let ControlFlow::Break(last) = self.emit_samples(t_new, recorder) {
                 return self.stop(last);
@@ -603,10 +605,14 @@ impl Simulation {
             if !self.engine.certified && !self.still_single() {
                 return Stretch::Again;
             }
-            if self.engine.follow_heat(self.t, &self.x) && self.t < self.segment {
+            match self.engine.follow_heat(self.t, &self.x) {
                 // The laws are others than those that the integrator begins its next step with.
-                (self.rolling, self.why) = (false, None);
-                return Stretch::Again;
+                Ok(true) if self.t < self.segment => {
+                    (self.rolling, self.why) = (false, None);
+                    return Stretch::Again;
+                }
+                Ok(_) => {}
+                Err(why) => return Stretch::Ended(Outcome::NotConverged(why)),
             }
             if self.t >= self.segment {
                 self.rolling = false;
@@ -820,7 +826,7 @@ impl Simulation {
                 &self.x[states..],
                 &self.came_in,
             ),
-            heat: self.engine.warming.as_ref().map(|w| w.report(self.t, &self.x[states..])),
+            heat: self.engine.warming.as_ref().and_then(|w| w.report(self.t, &self.x[states..])),
             beyond_limits: self.engine.beyond.clone(),
             assumptions: s.assumptions.clone(),
             notes,

@@ -118,20 +118,14 @@ impl Warming {
     /// Whether a place has warmed or cooled enough since the temperatures were known.
     pub fn is_due(&self, t: f64, energies: &[f64]) -> bool {
         let made = self.made_since(energies);
-        let storing = self.heat.nodes.iter().enumerate().filter(|(_, n)| n.capacity > 0.0);
-        storing
-            .into_iter()
-            .any(|(k, n)| (made[k] - self.leaving[k] * (t - self.since)).abs() >= 0.5 * STEP * n.capacity)
+        let mut storing = self.heat.nodes.iter().enumerate().filter(|(_, n)| n.capacity > 0.0);
+        storing.any(|(k, n)| (made[k] - self.leaving[k] * (t - self.since)).abs() >= 0.5 * STEP * n.capacity)
             || t >= self.since + self.span
     }
 
-    /// The network from when its temperatures were known up to a time, with the mean heats up to another.
-    fn run(&self, span: f64, making: &[f64]) -> Option<Run> {
-        let source = |_: f64| Ok::<_, Infallible>(making.to_vec());
-        // What has no temperatures keeps those it had: a rate that is not finite ends the run by itself.
-        let found: Result<Run, Failed<Infallible>> =
-            warm_up(&self.heat, &source, &self.temperatures, &[0.0, span], TOLERANCE);
-        found.ok()
+    /// The network over a time from when its temperatures were known, s, with the heats made at each place, W.
+    fn run(&self, span: f64, making: &[f64]) -> Result<Run, Failed<Infallible>> {
+        warm_up(&self.heat, &|_: f64| Ok(making.to_vec()), &self.temperatures, &[0.0, span], TOLERANCE)
     }
 
     /// Mean heat made at each place since the temperatures were known, W.
@@ -139,19 +133,25 @@ impl Warming {
         self.made_since(energies).iter().map(|e| e / (t - self.since)).collect()
     }
 
-    /// The temperatures at a state, K.
+    /// The temperatures at a state, K; NaN where the network has none.
     pub fn at(&self, t: f64, energies: &[f64]) -> Vec<f64> {
-        let run = (t > self.since).then(|| self.run(t - self.since, &self.making(t, energies))).flatten();
-        run.map_or_else(|| self.temperatures.clone(), |run| run.end)
+        if t <= self.since {
+            return self.temperatures.clone();
+        }
+        let run = self.run(t - self.since, &self.making(t, energies));
+        run.map_or_else(|_| vec![f64::NAN; self.temperatures.len()], |run| run.end)
     }
 
     /// Goes on to a time.
-    pub fn follow(&mut self, t: f64, energies: &[f64]) {
+    ///
+    /// # Errors
+    /// The network has no temperatures; nothing has changed then.
+    pub fn follow(&mut self, t: f64, energies: &[f64]) -> Result<(), Failed<Infallible>> {
         if t <= self.since {
-            return;
+            return Ok(());
         }
         let (span, making) = (t - self.since, self.making(t, energies));
-        let Some(run) = self.run(span, &making) else { return };
+        let run = self.run(span, &making)?;
         if self.beyond.is_none() && run.oil_range[1] > self.heat.limit {
             self.beyond = Some(self.since + self.passes_limit(span, &making));
         }
@@ -163,6 +163,7 @@ impl Warming {
         (self.making, self.span) = (making, span);
         self.counted.copy_from_slice(&energies[self.first..]);
         self.since = t;
+        Ok(())
     }
 
     /// How far into a span the oil passes its limit, s.
@@ -170,7 +171,7 @@ impl Warming {
         let (mut below, mut above) = (0.0, span);
         while above - below > 1e-6 * span {
             let middle = 0.5 * (below + above);
-            match self.run(middle, making).is_some_and(|run| run.oil_range[1] <= self.heat.limit) {
+            match self.run(middle, making).is_ok_and(|run| run.oil_range[1] <= self.heat.limit) {
                 true => below = middle,
                 false => above = middle,
             }
@@ -199,17 +200,17 @@ impl Warming {
         true
     }
 
-    /// What there is to say at a time.
-    pub fn report(&self, t: f64, energies: &[f64]) -> MotionHeat {
+    /// What there is to say at a time; none where the network has no temperatures there.
+    pub fn report(&self, t: f64, energies: &[f64]) -> Option<MotionHeat> {
         let mut end = self.clone();
-        end.follow(t, energies);
+        end.follow(t, energies).ok()?;
         let heat = &self.heat;
         let named = |t: &[f64]| heat.nodes.iter().zip(t).map(|(n, t)| (n.name.clone(), *t)).collect();
         let storing = heat.nodes.iter().enumerate().filter(|(_, n)| n.capacity > 0.0);
         let stored: f64 = storing.map(|(k, n)| n.capacity * (end.temperatures[k] - end.start[k])).sum();
         let size = end.made.abs().max(end.carried.abs()).max(stored.abs());
         let elsewhere = energies[self.first..].iter().zip(&*self.places).filter(|(_, places)| places.is_none());
-        MotionHeat {
+        Some(MotionHeat {
             start_k: named(&end.start),
             end_k: named(&end.temperatures),
             highest_oil_k: end.highest,
@@ -220,7 +221,7 @@ impl Warming {
             stored_j: stored,
             elsewhere_j: elsewhere.map(|(e, _)| e).sum(),
             residual: if size > 0.0 { (end.made - end.carried - stored) / size } else { 0.0 },
-        }
+        })
     }
 }
 
