@@ -419,6 +419,7 @@ fn optima(report: &mut Report) {
         ]);
     }
     let (least, most) = (backward.iter().copied().fold(1.0, f64::min), backward.iter().copied().fold(0.0, f64::max));
+    let best = bilateral(trains[2], 0.02);
     s.points = vec![
         format!(
             "With losses of the teeth alone a drive of 89.0 % forward has {:.1} to {:.1} % backward with each of these teeth. The \
@@ -429,15 +430,17 @@ fn optima(report: &mut Report) {
             100.0 * most,
             100.0 * (least - BACKWARD)
         ),
-        "The abstract names no optimum of a finished space. With external meshes of 98 % and internal ones of 99 % the best of all \
-         63 trains, the last of these rows, has 83.9 % forward and 81.5 % backward, and that is all there is in its space."
-            .into(),
+        format!(
+            "The abstract names no optimum of a finished space. With external meshes of 98 % and internal ones of 99 % the best of \
+             all trains of that space, the last of these rows, has {:.1} % forward and {:.1} % backward.",
+            100.0 * best[1],
+            100.0 * best[2]
+        ),
         "Optimisers that use formulas outside their range report drives of more than 100 %. No row of the answers here does: \
          where no sign pattern of the powers agrees with itself friction locks the train, and that is said."
             .into(),
     ];
     report.sections.push(s);
-    let best = bilateral(trains[2], 0.02);
     report.gates.push(Gate::new(
         "3K, best train: efficiency forward of its train file",
         "26755/31878",
@@ -485,8 +488,9 @@ fn open_counts(report: &mut Report) {
         "Published counts: places of clutches in hybrids",
         &[
             "X. Zhang, C. Li, H. Peng and J. Sun, Journal of Dynamic Systems, Measurement, and Control 2015: of n sets, \
-             C(3n, 2) + 3n − 2n − 1 places of a clutch are useful when the output is never held. Ours: pairs of members and \
-             brakes as points in the space of motions, in fractions; places that do the same are one point.",
+             C(3n, 2) + 3n − 2n − 1 places of a clutch are useful when the output is never held. Beside that formula \
+             (`independent`) stands a count of this page, not of `willis schemes`: pairs of members and brakes as points in the \
+             space of motions, in fractions; places that do the same are one point.",
         ],
     );
     for (sets, expected) in [(1, 3), (2, 16), (3, 38)] {
@@ -530,7 +534,7 @@ pub(crate) fn report() -> Report {
         format: Format::new(),
         case: "design".into(),
         title: "Designs: whole spaces counted, production and published optima in them".into(),
-        source: "Counts of an independent program: exact whole numbers and fractions in Python and plain C, each count by two \
+        source: "Counts of a second program, written for this comparison and not in the repository: exact whole numbers and fractions in Python and plain C, each count by two \
                  methods that agree (brute force and windows; two ways of elimination, and exact fractions on everything). \
                  Published numbers with their source at each table."
             .into(),

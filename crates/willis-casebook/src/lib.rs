@@ -304,10 +304,8 @@ impl fmt::Display for Report {
         let missed = self.gates.iter().filter(|g| !g.holds).count();
         let mut gates = Section::new(
             "Gates",
-            &[
-                "Each row says where its bound comes from; some bounds were set with the other number known. A miss stays a miss, with its cause.",
-            ],
-            &["what", "printed", "Willis", "from", "to", "verdict"],
+            &["Some bounds were set with the other number known. A miss stays a miss, with its cause."],
+            &["what", "expected", "Willis", "from", "to", "verdict"],
         );
         let size = |g: &Gate| g.low.abs().max(g.high.abs()).max(1e-12);
         for g in &self.gates {

@@ -142,6 +142,9 @@ impl Question for Export {
             assumptions: vec![],
             kinds: vec![],
         };
+        let kinds = KINDS.iter().map(|k| (k.id, k.about));
+        #[cfg(feature = "import")]
+        let kinds = kinds.chain([REXS]);
         let kind = match (self.kind.as_deref().filter(|k| *k != "list"), of) {
             (Some(kind), [_]) => kind,
             (Some(kind), _) => {
@@ -150,13 +153,16 @@ impl Question for Export {
                 return Err(d.hint("name a train file after the kind of export").into());
             }
             (None, _) => {
-                let kinds = KINDS.iter().map(|k| (k.id, k.about));
-                #[cfg(feature = "import")]
-                let kinds = kinds.chain([REXS]);
                 let kinds = kinds.map(|(name, about)| OneKind { name: name.to_owned(), about: about.to_owned() });
                 return Ok(ExportAnswer { kinds: kinds.collect(), ..answer(None) });
             }
         };
+        if !kinds.clone().any(|(name, _)| name == kind) {
+            let names: Vec<&str> = kinds.map(|k| k.0).collect();
+            let d = Diagnostic::new(Code::UnknownName, "", format!("there is no export `{kind}`"));
+            let hint = format!("the exports are: {}; the command line also has fmu", names.join(", "));
+            return Err(d.suggest(kind, names.into_iter().chain(["fmu"])).hint(hint).into());
+        }
         let request = ExportRequest {
             state: self.state.clone(),
             all_states: self.all_states,

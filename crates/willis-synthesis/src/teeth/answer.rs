@@ -110,6 +110,13 @@ pub struct Stage {
     pub by_planets: Named<u64>,
 }
 
+impl Stage {
+    /// Whether it is a demand on efficiency, which laws may judge.
+    pub(crate) fn is_demand(&self) -> bool {
+        ["forward", "backward"].contains(&self.condition.as_str())
+    }
+}
+
 /// A train.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -12,7 +12,7 @@ use willis::named::Named;
 use willis::train::{FRAME, Load, Operation, Train};
 use willis::work::Work;
 
-use super::answer::{LawRow, OperationRow, RankedBy, Ranking, Recomputed};
+use super::answer::{LawRow, OperationRow, RankedBy, Ranking, Recomputed, Stage};
 use super::document::{Design, nth, tables};
 use super::front::Front;
 use super::search::{Judged, Needs, Progress, Teeth};
@@ -65,6 +65,10 @@ pub(crate) struct Order {
     /// What may be wished of efficiencies under the laws where nothing satisfies the demands: the objective, the demand, the
     /// best there is with the other one, how many there are.
     pub most: Vec<(Objective, f64, f64, u64)>,
+    /// Where all trains were judged by the laws: how many satisfy each demand on efficiency and those before it.
+    pub demands: Vec<(Objective, u64)>,
+    /// Where demands were judged by mesh efficiencies that the laws may contradict: how many trains satisfy everything else.
+    pub nominal: Option<u64>,
 }
 
 impl Lawful {
@@ -243,9 +247,7 @@ impl Design {
 
     /// How many trains satisfy everything but demands on efficiency, at most.
     fn before_demands(&self, progress: &Progress) -> u64 {
-        let is_demand = |c: &str| ["forward", "backward"].contains(&c);
-        let first = progress.waterfall.iter().position(|s| is_demand(&s.condition));
-        let stage = match first {
+        let stage = match progress.waterfall.iter().position(Stage::is_demand) {
             Some(0) | None => progress.waterfall.last(),
             Some(k) => progress.waterfall.get(k - 1),
         };
@@ -270,6 +272,8 @@ impl Design {
             let laws = teeth.map(|t| self.lawful(t, &names));
             laws.map_or([false; 2], |l| [l.forward.is_some(), l.backward.is_some()])
         };
+        let demanded = self.require.forward.is_some() || self.require.backward.is_some();
+        let is_nominal = demanded && !names.is_empty() && self.is_computed();
         let mut ranked = ranks(progress.front.first());
         if few && (ranked != [false; 2] || progress.front.is_empty()) {
             let mut open = self.clone();
@@ -349,7 +353,8 @@ impl Design {
         }
         ranking.words = self.words(&ranking);
         let front = if by_laws { trains.iter().map(|t| self.point(&t.value, &t.teeth)).collect() } else { front };
-        Order { ranking, trains, front, of_all, interrupted, most: vec![] }
+        let nominal = is_nominal.then_some(lies_before);
+        Order { ranking, trains, front, of_all, interrupted, most: vec![], demands: vec![], nominal }
     }
 
     /// All trains by the laws.
@@ -395,6 +400,12 @@ impl Design {
                 }
             }
         }
+        let mut counts = vec![];
+        let mut left: Vec<&Ranked> = settled.iter().collect();
+        for (objective, _) in demands.into_iter().filter(|d| d.1.is_some()) {
+            left.retain(|t| !self.demands_missed(&t.value).iter().any(|d| d == objective.name()));
+            counts.push((objective, left.len() as u64));
+        }
         settled.retain(|t| t.laws.as_ref().is_some_and(|l| l.fails.is_empty()));
         ranking.satisfy = Some(settled.len() as u64);
         let mut front = Front::default();
@@ -407,7 +418,7 @@ impl Design {
             if all { settled } else { front.iter().map(|(_, k)| settled[*k].clone()).collect() };
         self.sort(&mut trains, sort, |t| &t.value, |t| &t.teeth);
         ranking.words = self.words(&ranking);
-        Order { ranking, trains, front: points, of_all: all, interrupted: false, most }
+        Order { ranking, trains, front: points, of_all: all, interrupted: false, most, demands: counts, nominal: None }
     }
 
     fn name_operations(&self, all: &[(Teeth, Judged, Lawful)], ranking: &mut Ranking) {
@@ -428,11 +439,16 @@ impl Design {
         all.sort_by(|a, b| value(a).total_cmp(&value(b)).then_with(|| teeth(a).cmp(teeth(b))));
     }
 
+    /// Whether laws compute tooth friction of a train of this design.
+    fn is_computed(&self) -> bool {
+        self.sets.iter().any(|s| s.has_geometry && !s.has_losses)
+    }
+
     /// Which losses ranked, in words.
     fn words(&self, ranking: &Ranking) -> String {
-        let computed = self.sets.iter().any(|s| s.has_geometry && !s.has_losses);
-        let given = if computed {
-            "nominal mesh efficiencies, those of one choice of teeth, whatever the load and speed are"
+        let given = if self.is_computed() {
+            "nominal mesh efficiencies, those of one choice of teeth, whatever the load and speed are (the columns of a row are those \
+             of its own teeth)"
         } else {
             "the mesh efficiencies of the file, whatever the load and speed are"
         };

@@ -4,13 +4,13 @@ use toml_edit::{DocumentMut, Item};
 use willis::Model;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 
-use super::answer::{DesignAnswer, OwnTrain, Ranking, Recomputed};
+use super::answer::{DesignAnswer, DesignRow, OwnTrain, Ranking, Recomputed};
 use super::document::{Design, DesignedSet, at, paths, planet_tables, set_kind, tables};
 use super::front::covers;
 use super::laws::Lawful;
 use super::layout::SetKind;
 use super::range::{Counts, MOST_TEETH};
-use super::search::{Needs, Teeth};
+use super::search::{Judged, Needs, Teeth};
 use super::space::SetSpace;
 
 /// The largest mismatch for which a set that exists is recognised.
@@ -60,28 +60,33 @@ impl Design {
         let value;
         (value, row.laws) = self.with_own_laws(&judged, &laws, ranking);
         row.operations = laws.operations;
+        // Where laws rank all trains, they decide about demands.
+        let decides = if ranking.recomputed == Recomputed::All { &value } else { &judged };
+        here.missed(&teeth, &row, decides, &mut fails);
+        let point = self.point(&value, &teeth);
+        let better = |other: &&Vec<f64>| covers(other, &point) && **other != point;
+        let better = front.iter().filter(better).count() as u64;
+        Ok(OwnTrain { name: name.to_owned(), fails, better, row })
+    }
+
+    /// Targets, limits and demands that a train does not keep; the targets before what is known already.
+    fn missed(&self, teeth: &Teeth, row: &DesignRow, decides: &Judged, fails: &mut Vec<String>) {
         for (k, (state, target)) in self.targets.iter().enumerate() {
             let inside = target.ratio.is_any()
                 || match row.states.get(&target.state).and_then(|s| s.ratio.as_ref()) {
                     Some(exact) => target.ratio.windows.iter().any(|[a, b]| a <= exact && exact <= b),
                     None => {
-                        target.ratio.deviation(self.layout.states[*state].ratio.at(&self.variables(&teeth))) <= 1e-12
+                        target.ratio.deviation(self.layout.states[*state].ratio.at(&self.variables(teeth))) <= 1e-12
                     }
                 };
             if !inside {
                 fails.insert(k.min(fails.len()), format!("ratio of state {}", target.state));
             }
         }
-        let ring = self.limits.ring_diameter.is_some_and(|limit| here.ring(&teeth) > limit * (1.0 + 1e-12));
+        let ring = self.limits.ring_diameter.is_some_and(|limit| self.ring(teeth) > limit * (1.0 + 1e-12));
         fails.extend(ring.then(|| "ring_diameter".to_owned()));
         let later = self.conditions_of_motion();
-        // Where laws rank all trains, they decide about demands.
-        let decides = if ranking.recomputed == Recomputed::All { &value } else { &judged };
         fails.extend(later.into_iter().zip(self.meets(decides)).filter(|(_, met)| !met).map(|(name, _)| name));
-        let point = self.point(&value, &teeth);
-        let better = |other: &&Vec<f64>| covers(other, &point) && **other != point;
-        let better = front.iter().filter(better).count() as u64;
-        Ok(OwnTrain { name: name.to_owned(), fails, better, row })
     }
 
     /// The answer for tooth numbers that are given: one row, as a search would show it, and no search. One text a set, in the
@@ -114,7 +119,7 @@ impl Design {
             return Err(refused(message, format!("give the teeth of every set, such as 20/12/44: {}", order())));
         }
         let mut here = self.clone();
-        let mut all: Teeth = vec![];
+        let mut own_sets: Vec<Own> = vec![];
         for (set, text) in here.sets.iter_mut().zip(teeth) {
             let numbers: Option<Vec<i64>> = text.split('/').map(|z| z.trim().parse().ok()).collect();
             let gears = set.space.kind.gears().len();
@@ -137,14 +142,21 @@ impl Design {
                 return Err(refused(message, hint));
             }
             set.space = narrow;
-            all.push(own.teeth);
+            own_sets.push(own);
         }
+        let all: Teeth = own_sets.iter().map(|o| o.teeth.clone()).collect();
         let Some(judged) = here.judge(&all, Needs::ALL) else {
             return Err(refused("these teeth have no ratio in a state for which one is asked".into(), order()));
         };
         let mut row = here.row(1, &all, &judged);
         (row.laws, row.operations) = here.row_with_laws(&all, &judged);
-        Ok(here.unsearched(row))
+        let mut fails = vec![];
+        for (set, mut own) in self.sets.iter().zip(own_sets) {
+            own.planets = row.sets.get(&set.name).map_or(0, |s| s.chosen);
+            self.failures(set, &own, &mut fails);
+        }
+        here.missed(&all, &row, &judged, &mut fails);
+        Ok(here.unsearched(row, &fails))
     }
 
     /// What of the ranges and rules a set that exists does not keep.

@@ -8,7 +8,7 @@ use willis::named::Named;
 use willis::work::Work;
 
 use super::answer::{
-    Completeness, DesignAnswer, DesignRow, Ranking, Recomputed, Relaxation, SetRange, SetRow, Space, StateRow,
+    Completeness, DesignAnswer, DesignRow, Ranking, Recomputed, Relaxation, SetRange, SetRow, Space, Stage, StateRow,
 };
 use super::document::{Design, WIDTH_IN_MODULES, give_geometry, substitute};
 use super::fit::Phase;
@@ -110,7 +110,12 @@ impl Design {
             None => None,
         };
         let space = self.space();
-        let left = progress.waterfall.last().map_or(0, |s| s.trains);
+        let by_all = order.ranking.recomputed == Recomputed::All;
+        let mut waterfall = progress.waterfall;
+        if by_all {
+            under_laws_in_stages(&mut waterfall, order.ranking.trains, &order.demands);
+        }
+        let left = waterfall.last().map_or(0, |s| s.trains);
         let mut diagnostics = vec![];
         for k in self.impossible() {
             let (state, target) = &self.targets[k];
@@ -124,21 +129,23 @@ impl Design {
             d = d.hint("change its shift elements, or drop the target");
             diagnostics.push(d);
         }
-        if complete && progress.waterfall.first().is_some_and(|s| s.trains == 0) && diagnostics.is_empty() {
+        if complete && waterfall.first().is_some_and(|s| s.trains == 0) && diagnostics.is_empty() {
             diagnostics.extend(self.contradictions());
         }
         if rows.iter().any(|r| !r.certified) {
             let message = "the efficiency of some rows is not proved to be the only one; see their verdicts";
             diagnostics.push(Diagnostic::new(Code::NotEnumerated, "", message));
         }
-        let by_all = order.ranking.recomputed == Recomputed::All;
-        let is_empty = if by_all { order.trains.is_empty() } else { left == 0 };
-        let relaxations = match complete && is_empty {
+        let mut relaxations = match complete && left == 0 {
             true if by_all => order.most.iter().map(|m| under_laws(*m)).collect(),
             true => super::relax::relaxations(self, work),
             false => vec![],
         };
-        let mut statement = self.statement(&space, complete, done, progress.of, left);
+        let mut statement = self.statement(&space, complete, done, progress.of, left, order.nominal);
+        if order.nominal.is_some_and(|n| n > 0) {
+            // The other wishes need not give: the laws may find trains that satisfy all of them.
+            relaxations.retain(|r| ["forward", "backward"].contains(&r.wish.as_str()));
+        }
         if interrupted {
             statement += " Rows are missing: working them out was interrupted.";
         }
@@ -151,7 +158,7 @@ impl Design {
             wish: self.wish(),
             space,
             completeness: Completeness { complete, done, of: progress.of, statement },
-            waterfall: progress.waterfall,
+            waterfall,
             objectives: self.objectives.clone(),
             front: if by_all { order.front.len() } else { progress.front.len() } as u64,
             ranked_by: order.ranking,
@@ -165,7 +172,13 @@ impl Design {
     }
 
     /// The answer of tooth numbers that were given.
-    pub(crate) fn unsearched(&self, row: DesignRow) -> DesignAnswer {
+    pub(crate) fn unsearched(&self, row: DesignRow, fails: &[String]) -> DesignAnswer {
+        let mut diagnostics = vec![];
+        if !fails.is_empty() {
+            let message = format!("these teeth do not keep the wish: {}", fails.join(", "));
+            let d = Diagnostic::new(Code::Implausible, "teeth", message);
+            diagnostics.push(d.hint("the row and its train file are those of the teeth all the same"));
+        }
         let statement = "These tooth numbers were given; nothing was searched.".to_owned();
         DesignAnswer {
             format: Format::new(),
@@ -182,7 +195,7 @@ impl Design {
             rows: vec![row],
             own: None,
             relaxations: vec![],
-            diagnostics: vec![],
+            diagnostics,
         }
     }
 
@@ -213,7 +226,7 @@ impl Design {
         Some(Diagnostic::new(Code::Implausible, place, message).hint(hint))
     }
 
-    fn statement(&self, space: &Space, complete: bool, done: u64, of: u64, left: u64) -> String {
+    fn statement(&self, space: &Space, complete: bool, done: u64, of: u64, left: u64, nominal: Option<u64>) -> String {
         let sets: Vec<String> = space
             .sets
             .iter()
@@ -229,7 +242,14 @@ impl Design {
             n => format!("{} sets of tooth numbers satisfy", grouped(n)),
         };
         let what = format!("{}. {} candidates", sets.join(". "), many(space.candidates));
-        if complete {
+        if let (true, Some(others)) = (complete, nominal) {
+            format!(
+                "{what}, all examined or excluded by bounds with a margin for rounding; {sets_left} the wish, the demands on \
+                 efficiency judged by nominal mesh efficiencies. The laws of friction may judge otherwise: {} satisfy all other \
+                 wishes, and if so many may be recomputed, the laws judge every one of them.",
+                grouped(others)
+            )
+        } else if complete {
             format!(
                 "{what}, all examined or excluded by bounds with a margin for rounding; {sets_left} the wish; nothing else \
                  exists in this space."
@@ -454,7 +474,7 @@ impl Design {
                 .collect();
             document["name"] = toml_edit::value(format!("{}, {}", self.name, title.join(" ")));
             let before = document.get("notes").and_then(toml_edit::Item::as_str).unwrap_or("").trim().to_owned();
-            let mut notes = format!("{before}\nTooth numbers found for this wish: {}.", self.wish());
+            let mut notes = format!("{before}\nTooth numbers for this wish: {}.", self.wish());
             if assumed {
                 notes += &format!(" Teeth are {WIDTH_IN_MODULES} modules wide, which is assumed.");
             }
@@ -493,6 +513,21 @@ fn under_laws_in_words(ranking: &Ranking, satisfy: u64) -> String {
         many(ranking.trains),
         if satisfy == 1 { "satisfies" } else { "satisfy" }
     )
+}
+
+/// The stages with demands on efficiency as the laws judge them: all `trains` satisfy the other wishes.
+fn under_laws_in_stages(waterfall: &mut Vec<Stage>, trains: u64, demands: &[(Objective, u64)]) {
+    let Some(first) = waterfall.iter().position(Stage::is_demand) else { return };
+    let stage = |condition: &str, trains: u64| Stage {
+        condition: condition.to_owned(),
+        trains,
+        designs: trains,
+        by_planets: Named::default(),
+    };
+    let others: Vec<Stage> =
+        waterfall.drain(first..).filter(|s| !s.is_demand()).map(|s| stage(&s.condition, trains)).collect();
+    waterfall.extend(others);
+    waterfall.extend(demands.iter().map(|(objective, left)| stage(objective.name(), *left)));
 }
 
 /// A demand that keeps a result empty under the laws.

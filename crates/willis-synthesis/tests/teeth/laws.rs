@@ -122,11 +122,51 @@ fn laws_judge_demands_on_efficiency() {
     let expected = values.iter().filter(|v| **v >= middle).count() as u64;
     assert_eq!((asked.ranked_by.trains, asked.ranked_by.satisfy), (values.len() as u64, Some(expected)));
     assert!(asked.rows.iter().all(|r| r.laws.as_ref().unwrap().backward.unwrap() >= middle));
+    // Every count of the answer is that under the laws.
+    let last = asked.waterfall.last().unwrap();
+    assert_eq!((last.condition.as_str(), last.trains), ("backward", expected));
+    let said = format!("{expected} set{} of tooth numbers satisf", if expected == 1 { "" } else { "s" });
+    assert!(asked.completeness.statement.contains(&said), "{}", asked.completeness.statement);
     let above = (most + 1.0) / 2.0;
     let empty = ask(&lawful(&format!("require = {{ backward = {above} }}"), BOTH), Request::default());
     assert!(empty.rows.is_empty() && empty.front == 0);
     let [only] = &empty.relaxations[..] else { panic!("{:?}", empty.relaxations) };
     assert_eq!((only.wish.as_str(), only.needed, only.trains), ("backward", Some(most), values.len() as u64));
+}
+
+/// Where too many trains are left to ask the laws, a demand is judged by mesh efficiencies: then nothing is said to exist or not
+/// to exist under the laws, and no other wish is asked to give.
+#[test]
+fn a_demand_that_mesh_efficiencies_judged_is_said_to_be_so() {
+    let all =
+        ask(&lawful("", BOTH), Request { recompute: Some(0), all: true, top: Some(10_000), ..Request::default() });
+    let trains = all.rows.len() as u64;
+    let demand = lawful("require = { forward = 0.995 }", BOTH);
+    let answer = ask(&demand, Request { recompute: Some(trains - 1), ..Request::default() });
+    let said = &answer.completeness.statement;
+    assert!(answer.rows.is_empty() && !said.contains("nothing else exists"), "{said}");
+    assert!(said.contains(&format!("{trains} satisfy all other wishes")), "{said}");
+    assert!(answer.relaxations.iter().all(|r| r.wish == "forward"), "{:?}", answer.relaxations);
+    // One more, and the laws judge.
+    let judged = ask(&demand, Request { recompute: Some(trains), ..Request::default() });
+    assert_eq!(judged.ranked_by.recomputed, Recomputed::All);
+    assert!(judged.completeness.statement.contains("nothing else exists"));
+}
+
+/// Teeth that are given and do not keep the wish are a row all the same, with what they do not keep.
+#[test]
+fn given_teeth_that_miss_the_wish_are_named() {
+    let design = lawful("limits = { ring_diameter = \"140 mm\" }", BOTH);
+    let told = |teeth: &str| {
+        let answer = design.answer_for(&[teeth.to_owned()]).unwrap();
+        answer.diagnostics.iter().map(|d| d.message.clone()).collect::<Vec<_>>()
+    };
+    let kept = design.answer(&Request::default(), &Serial).unwrap();
+    let numbers = teeth(&kept.rows[0]).iter().map(i64::to_string).collect::<Vec<_>>().join("/");
+    assert!(told(&numbers).is_empty(), "{:?}", told(&numbers));
+    // 1 + 90/30 = 4, and 90 teeth of 2 mm.
+    let [missed] = &told("30/30/90")[..] else { panic!() };
+    assert!(missed.contains("ratio of state") && missed.contains("ring_diameter"), "{missed}");
 }
 
 /// Where there are too many trains the front of the mesh efficiencies is computed, or what is shown of it, and the words say
