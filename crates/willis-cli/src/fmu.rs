@@ -119,7 +119,13 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
 /// The runtime: as named, or beside this program, or where libraries are installed.
 fn library(named: Option<&Path>) -> Result<Vec<u8>, String> {
     let file = format!("{}{LIBRARY}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let read = |path: &Path| std::fs::read(path).map_err(|e| format!("{}: {e}\n", path.display()));
+    let read = |path: &Path| {
+        let bytes = std::fs::read(path).map_err(|e| format!("{}: {e}\n", path.display()))?;
+        if is_runtime(&bytes) {
+            return Ok(bytes);
+        }
+        Err(format!("{} is no runtime of an FMU; build it: cargo build --release -p willis-fmu\n", path.display()))
+    };
     if let Some(path) = named.map(Path::to_owned).or(std::env::var_os(PLACE).map(PathBuf::from)) {
         return read(&path);
     }
@@ -133,4 +139,16 @@ fn library(named: Option<&Path>) -> Result<Vec<u8>, String> {
              then name it with --library or in {PLACE}\n"
         )),
     }
+}
+
+/// Whether bytes are a library of this platform that has what a host calls first.
+fn is_runtime(bytes: &[u8]) -> bool {
+    let begins: &[&[u8]] = match std::env::consts::OS {
+        "windows" => &[b"MZ"],
+        // For one kind of machine, or for several.
+        "macos" => &[&[0xcf, 0xfa, 0xed, 0xfe], &[0xca, 0xfe, 0xba, 0xbe]],
+        _ => &[b"\x7fELF"],
+    };
+    begins.iter().any(|mark| bytes.starts_with(mark))
+        && bytes.split(|b| *b == b'f').any(|rest| rest.starts_with(b"mi2Instantiate"))
 }

@@ -702,8 +702,21 @@ fn units_hold_a_library_that_is_named() {
     let folder = folder("fmu");
     let (library, unit) = (folder.join("library.so"), folder.join("launch.fmu"));
     let other = folder.join("other.fmu");
-    std::fs::write(&library, "not a library, but bytes").expect("written");
     let all = ["export", "fmu", "examples/launch.toml", "--library", path(&library), "-o", path(&unit)];
+    let mark: &[u8] = match std::env::consts::OS {
+        "windows" => b"MZ",
+        "macos" => &[0xcf, 0xfa, 0xed, 0xfe],
+        _ => b"\x7fELF",
+    };
+    // What begins as no library does, or has not what a host calls first.
+    for (begin, name) in [(&b"root:x:0:0"[..], "fmi2Instantiate"), (mark, "fmi2Initiate"), (&[], "")] {
+        std::fs::write(&library, [begin, name.as_bytes()].concat()).expect("written");
+        let told = refused(&run(&all), 1);
+        let wanted = format!("{} is no runtime of an FMU; build it: cargo build --release", path(&library));
+        assert!(told.contains(&wanted), "{told}");
+        assert!(!unit.exists());
+    }
+    std::fs::write(&library, [mark, b"not a library, but bytes: fffmi2Instantiate"].concat()).expect("written");
     let output = run(&all);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     assert!(
