@@ -9,7 +9,7 @@ use willis::dynamics::{Input, Outcome, Output, Simulation};
 use willis::model::Model;
 
 use crate::layout::{Interface, Kind, Layout, Role, TOLERANCE, Value, Variable, options, verdict, written};
-use crate::resources::Resources;
+use crate::resources::{Resources, order};
 
 /// How a call ended, by the numbers of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +78,8 @@ pub(crate) struct Stepped {
 pub(crate) struct Settled {
     pub states_changed: bool,
     pub next: Option<f64>,
+    /// Whether there is no motion to go on with.
+    pub over: bool,
 }
 
 /// All that an instance is, but for whom it tells of it. A clone is its state.
@@ -106,7 +108,16 @@ pub(crate) struct Instance {
     /// What is to be told, by category.
     pub news: Vec<(&'static str, String)>,
     told_events: usize,
+    told_end: bool,
 }
+
+/// Where a host that integrates sets time and states.
+const IN_MOTION: [Phase; 3] = [Phase::Initialization, Phase::Event, Phase::Continuous];
+/// Where it reads states and what follows from them.
+const WITH_STATES: [Phase; 4] = [Phase::Initialization, Phase::Event, Phase::Continuous, Phase::Terminated];
+/// Where it reads what does not depend on them.
+const ALWAYS: [Phase; 5] =
+    [Phase::Instantiated, Phase::Initialization, Phase::Event, Phase::Continuous, Phase::Terminated];
 
 /// Work of a derivative: relative step of a central difference, before it is halved once.
 const PART: f64 = 1e-3;
@@ -134,6 +145,12 @@ impl Instance {
         }
         let model = resources.model().map_err(|wrong| error(told(&wrong)))?;
         let layout = Layout::of(&model, &index.scenario, interface).map_err(|wrong| error(told(&wrong)))?;
+        // References are places in the list of variables, which this runtime made anew.
+        if order(&layout) != index.variables {
+            return Err(error(
+                "the runtime has other variables than the description; build willis-fmu of the same version and export anew",
+            ));
+        }
         Ok(Self {
             inputs: vec![Given::default(); layout.inputs.len()],
             layout: Arc::new(layout),
@@ -153,6 +170,7 @@ impl Instance {
             losses_at: None,
             news: vec![],
             told_events: 0,
+            told_end: false,
         })
     }
 
@@ -162,7 +180,7 @@ impl Instance {
         self.changed.clear();
         self.inputs.fill(Given::default());
         self.offset = 0.0;
-        (self.run, self.losses_at, self.told_events) = (None, None, 0);
+        (self.run, self.losses_at, self.told_events, self.told_end) = (None, None, 0, false);
     }
 
     /// Whether the host integrates.
@@ -224,6 +242,7 @@ impl Instance {
         self.ready()?;
         self.phase = if self.exchanges() || self.stops_at_events { Phase::Event } else { Phase::Step };
         self.tell_events();
+        self.tell_end();
         Ok(())
     }
 
@@ -279,7 +298,7 @@ impl Instance {
             self.handles.iter().zip(&self.inputs).filter_map(|(h, given)| Some((*h, given.value?))).collect();
         let mut run = run.again_with(&given).map_err(wrong)?;
         self.inputs.iter_mut().for_each(|given| given.pending = false);
-        self.losses_at = None;
+        (self.losses_at, self.told_end) = (None, false);
         if self.exchanges() {
             self.turn_speeds(&mut run)?;
             // Why it does not go on is an output.
@@ -308,6 +327,16 @@ impl Instance {
             self.told_events = run.event_count();
             self.news.push(("logEvents", format!("at {} s: {}", run.time() + self.offset, run.last_event())));
         }
+    }
+
+    /// That there is no motion to go on with becomes news, once. Whether it is so.
+    fn tell_end(&mut self) -> bool {
+        let Some(outcome) = self.run.as_ref().and_then(Simulation::outcome) else { return false };
+        if !self.told_end {
+            self.told_end = true;
+            self.news.push(("logStatusWarning", in_words(outcome)));
+        }
+        true
     }
 
     /// A value that is a number.
@@ -524,13 +553,8 @@ impl Instance {
         self.inputs.iter_mut().for_each(|given| given.pending &= early);
         self.losses_at = None;
         self.tell_events();
-        if let Some(outcome) = &outcome {
-            let why = format!("the run {}: {}", outcome.words(), outcome.why());
-            if steady {
-                self.news.push(("logStatusWarning", why));
-            }
-        }
-        Ok(Stepped { time: reached + offset, early, ended: outcome.is_some() })
+        let ended = self.tell_end();
+        Ok(Stepped { time: reached + offset, early, ended })
     }
 
     pub fn enter_event_mode(&mut self) -> Result<(), Fail> {
@@ -567,33 +591,30 @@ impl Instance {
         let (offset, exchanges) = (self.offset, self.exchanges());
         self.losses_at = None;
         let run = self.ready()?;
-        if !exchanges {
+        let (mut states_changed, mut next) = (false, None);
+        if exchanges {
+            // Why it does not go on is an output.
+            states_changed = run.settle().unwrap_or(false);
+            next = Some(run.next_break() + offset).filter(|t| t.is_finite());
+        } else if run.outcome().is_none() {
             // Inputs act at the time at which they were set.
-            if run.outcome().is_none() {
-                let now = run.time();
-                let _ = run.go_on(now);
-            }
-            return Ok(Settled { states_changed: false, next: None });
+            let now = run.time();
+            let _ = run.go_on(now);
         }
-        match run.settle() {
-            Ok(states_changed) => {
-                let next = run.next_break();
-                self.tell_events();
-                Ok(Settled { states_changed, next: Some(next + offset).filter(|t| t.is_finite()) })
-            }
-            Err(outcome) => Err(ended(&outcome)),
-        }
+        self.tell_events();
+        let over = self.tell_end();
+        Ok(Settled { states_changed, next: next.filter(|_| !over), over })
     }
 
-    fn exchanging(&self, what: &str) -> Result<(), Fail> {
+    fn exchanging(&self, what: &str, phases: &[Phase]) -> Result<(), Fail> {
         if !self.exchanges() {
             return Err(error(format!("{what} belongs to model exchange")));
         }
-        self.expect(what, &[Phase::Initialization, Phase::Event, Phase::Continuous])
+        self.expect(what, phases)
     }
 
     pub fn set_time(&mut self, time: f64) -> Result<(), Fail> {
-        self.exchanging("setting the time")?;
+        self.exchanging("setting the time", &IN_MOTION)?;
         if !time.is_finite() {
             return Err(error(format!("a time of {time} s is none")));
         }
@@ -606,7 +627,7 @@ impl Instance {
     }
 
     pub fn set_states(&mut self, state: &[f64]) -> Result<(), Fail> {
-        self.exchanging("setting states")?;
+        self.exchanging("setting states", &IN_MOTION)?;
         self.counted(state.len(), self.layout.states.len(), "states")?;
         if let Some(k) = state.iter().position(|x| !x.is_finite()) {
             let why = format!("the state `{}` cannot be {}", self.layout.states[k], state[k]);
@@ -624,18 +645,18 @@ impl Instance {
     }
 
     pub fn states(&mut self, out: &mut [f64]) -> Result<(), Fail> {
-        self.exchanging("reading states")?;
+        self.exchanging("reading states", &WITH_STATES)?;
         self.counted(out.len(), self.layout.states.len(), "states")?;
         out.copy_from_slice(self.ready()?.state());
         Ok(())
     }
 
     pub fn rates(&mut self, out: &mut [f64]) -> Result<(), Fail> {
-        self.exchanging("reading rates")?;
+        self.exchanging("reading rates", &WITH_STATES)?;
         self.counted(out.len(), self.layout.states.len(), "states")?;
         let run = self.ready()?;
         if let Some(outcome) = run.outcome() {
-            return Err(ended(&outcome.clone()));
+            return Err(error(in_words(outcome)));
         }
         run.rates(out);
         if out.iter().any(|x| !x.is_finite()) {
@@ -647,32 +668,33 @@ impl Instance {
     }
 
     pub fn indicators(&mut self, out: &mut [f64]) -> Result<(), Fail> {
-        self.exchanging("reading indicators")?;
+        self.exchanging("reading indicators", &WITH_STATES)?;
         self.counted(out.len(), self.layout.indicators, "indicators")?;
         self.ready()?.indicators(out);
         Ok(())
     }
 
     pub fn nominals(&mut self, out: &mut [f64]) -> Result<(), Fail> {
-        self.exchanging("reading nominal values")?;
+        self.exchanging("reading nominal values", &ALWAYS)?;
         self.counted(out.len(), self.layout.states.len(), "states")?;
         out.fill(1.0);
         Ok(())
     }
 
-    /// Whether the host has to look for an event at the end of its step.
-    pub fn completed(&mut self) -> Result<bool, Fail> {
+    /// Whether the host has to look for an event at the end of its step, and whether there is no motion to go on with.
+    pub fn completed(&mut self) -> Result<[bool; 2], Fail> {
         if !self.exchanges() {
             return Err(error("the end of a step belongs to model exchange"));
         }
         self.expect("the end of a step", &[Phase::Continuous])?;
-        Ok(self.ready()?.is_over())
+        let run = self.ready()?;
+        if run.outcome().is_some() { Ok([false, true]) } else { Ok([run.is_over(), false]) }
     }
 
     /// Derivatives of variables along a direction in others, in the present mode: central differences at two step lengths,
     /// whose leading error cancels. Exact but for rounding wherever the equations are linear, as within a mode they mostly are.
     pub fn directional(&mut self, unknowns: &[u32], knowns: &[u32], seed: &[f64], out: &mut [f64]) -> Result<(), Fail> {
-        self.exchanging("a directional derivative")?;
+        self.exchanging("a directional derivative", &WITH_STATES)?;
         self.counted(seed.len(), knowns.len(), "known variables")?;
         self.counted(out.len(), unknowns.len(), "unknown variables")?;
         for &reference in unknowns {
@@ -689,24 +711,44 @@ impl Instance {
         }
         self.ready()?;
         let kept = self.clone();
+        // Inputs act on the run as it stands, also where they would make it anew or could no longer be set.
+        self.phase = Phase::Continuous;
+        let done = self.differences(unknowns, knowns, seed, out);
+        *self = kept;
+        done
+    }
+
+    /// The same, with the run left where it was looked at last.
+    fn differences(&mut self, unknowns: &[u32], knowns: &[u32], seed: &[f64], out: &mut [f64]) -> Result<(), Fail> {
+        let run = self.ready()?;
+        let (time, states) = (run.time(), run.state().to_vec());
         let mut size: f64 = 0.0;
-        let mut start = vec![];
-        for (&reference, by) in knowns.iter().zip(seed) {
-            let value = self.real(reference)?;
+        let (mut of_inputs, mut of_states) = (vec![], vec![]);
+        for (&reference, &by) in knowns.iter().zip(seed) {
             let (_, variable) = self.variable(reference)?;
-            if !matches!(variable.role, Role::State(_) | Role::Input(_) | Role::InputRate(_)) {
-                return Err(error(format!("`{}` is neither a state nor an input", variable.name)));
-            }
+            let state = match variable.role {
+                Role::State(k) => Some(k),
+                Role::Input(_) | Role::InputRate(_) => None,
+                _ => return Err(error(format!("`{}` is neither a state nor an input", variable.name))),
+            };
+            let value = self.real(reference)?;
             size = size.max(by.abs() / value.abs().max(1.0));
-            start.push(value);
+            match state {
+                Some(k) => of_states.push((k, by)),
+                None => of_inputs.push((reference, value, by)),
+            }
         }
         let step = PART / size;
         let mut sums = vec![vec![0.0; out.len()]; 2];
         for (sum, h) in sums.iter_mut().zip([step, 0.5 * step]) {
             for sign in [1.0, -1.0] {
-                for ((&reference, by), value) in knowns.iter().zip(seed).zip(&start) {
-                    self.put(reference, value + sign * h * by)?;
+                for &(reference, value, by) in &of_inputs {
+                    self.set(reference, &Value::Real(value + sign * h * by))?;
                 }
+                // After the inputs: what they change must not take the states along.
+                let mut there = states.clone();
+                of_states.iter().for_each(|&(k, by)| there[k] += sign * h * by);
+                self.ready()?.look_at(time, &there);
                 self.losses_at = None;
                 for (sum, &reference) in sum.iter_mut().zip(unknowns) {
                     *sum += sign * self.real(reference)? / (2.0 * h);
@@ -716,23 +758,7 @@ impl Instance {
         for (k, out) in out.iter_mut().enumerate() {
             *out = (4.0 * sums[1][k] - sums[0][k]) / 3.0;
         }
-        *self = kept;
         Ok(())
-    }
-
-    /// A state or an input for a difference.
-    fn put(&mut self, reference: u32, value: f64) -> Result<(), Fail> {
-        let (_, variable) = self.variable(reference)?;
-        match variable.role {
-            Role::State(k) => {
-                let run = self.ready()?;
-                let (time, mut state) = (run.time(), run.state().to_vec());
-                state[k] = value;
-                run.look_at(time, &state);
-                Ok(())
-            }
-            _ => self.set(reference, &Value::Real(value)),
-        }
     }
 
     /// A run with the parameters of this instance, for a state that is read back.
@@ -743,10 +769,57 @@ impl Instance {
     /// Takes over a run that was read back.
     pub fn take(&mut self, run: Option<Simulation>) {
         self.told_events = run.as_ref().map_or(0, Simulation::event_count);
+        self.told_end = run.as_ref().is_some_and(|run| run.outcome().is_some());
         (self.run, self.losses_at) = (run, None);
     }
 }
 
-fn ended(outcome: &Outcome) -> Fail {
-    error(format!("the run {}: {}", outcome.words(), outcome.why()))
+fn in_words(outcome: &Outcome) -> String {
+    format!("the run {}: {}", outcome.words(), outcome.why())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+    use crate::resources::INDEX;
+
+    /// A library that was left behind from an older version, and lists its variables otherwise.
+    #[test]
+    fn a_runtime_with_other_variables_is_refused() {
+        let model = Model::from_toml(
+            "format = 1\nname = 'rotor'\nmembers = ['rotor']\ninertias = { rotor = '2 kg m^2' }\n\
+             [[scenario]]\nname = 'coast'\nduration = '1 s'\ninitial_speeds = { rotor = '3 rad/s' }\n",
+        )
+        .unwrap();
+        let folder = std::env::temp_dir().join(format!("willis fmu variables {}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let made = |layout: &Layout| {
+            let resources = Resources::of(&model, "coast", Interface::Both, layout);
+            fs::write(folder.join(INDEX), serde_json::to_string(&resources.index).unwrap()).unwrap();
+            for (name, text) in &resources.files {
+                fs::write(folder.join(name), text).unwrap();
+            }
+            Instance::new(&folder, &resources.index.token, true, false).map(drop)
+        };
+        let own = Layout::of(&model, "coast", Interface::Both).unwrap();
+        assert_eq!(made(&own), Ok(()));
+        let change = |what: fn(&mut Vec<Variable>)| {
+            let mut layout = own.clone();
+            what(&mut layout.variables);
+            layout
+        };
+        for other in [
+            change(|all| all.swap(1, 2)),
+            change(|all| drop(all.pop())),
+            change(|all| all[1].name.push('s')),
+            change(|all| all[1].role = Role::Tolerance),
+            change(|all| all[1].kind = Kind::Integer),
+        ] {
+            let why = made(&other).unwrap_err().why;
+            assert!(why.contains("the runtime has other variables than the description"), "{why}");
+        }
+        fs::remove_dir_all(&folder).unwrap();
+    }
 }

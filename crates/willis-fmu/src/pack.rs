@@ -63,13 +63,13 @@ pub fn pack(model: &Model, request: &Request<'_>) -> Result<Packed, Diagnostics>
             return Err(d.hint("add a [[scenario]] with a duration, sources and speeds at the start").into());
         }
         (None, all) => {
-            let names = all.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", ");
+            let names = all.iter().map(|s| format!("`{}`", s.name)).collect::<Vec<_>>().join(", ");
             let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has {} scenarios", all.len()));
             return Err(d.hint(format!("name one of them: {names}")).into());
         }
     };
     let layout = Layout::of(model, &scenario, request.interface)?;
-    let resources = Resources::of(model, &scenario, request.interface);
+    let resources = Resources::of(model, &scenario, request.interface, &layout);
     let description =
         describe(&layout, train.name(), &scenario, &resources.index.token, request.version, request.interface);
     let mut entries = vec![Entry { name: "modelDescription.xml".to_owned(), bytes: description.into_bytes() }];
@@ -103,5 +103,25 @@ fn platform(version: Version) -> String {
             format!("{name}{}", if cfg!(target_pointer_width = "64") { "64" } else { "32" })
         }
         Version::Three => format!("{arch}-{}", if os == "macos" { "darwin" } else { os }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenarios_with_commas_in_their_names_are_told_apart() {
+        let scenario = |name: &str| format!("[[scenario]]\nname = '{name}'\nduration = '1 s'\n");
+        let model = Model::from_toml(&format!(
+            "format = 1\nname = 'rotor'\nmembers = ['rotor']\ninertias = {{ rotor = '2 kg m^2' }}\n{}{}",
+            scenario("1 to 2, handed over"),
+            scenario("coast")
+        ));
+        let request =
+            Request { scenario: None, version: Version::Two, interface: Interface::Both, library: b"the runtime" };
+        let wrong = pack(&model.unwrap(), &request).unwrap_err();
+        let hints: Vec<String> = wrong.iter().flat_map(|d| d.hints.iter().map(ToString::to_string)).collect();
+        assert_eq!(hints, ["name one of them: `1 to 2, handed over`, `coast`"]);
     }
 }

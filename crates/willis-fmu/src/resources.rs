@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 use willis::diagnostic::Diagnostics;
 use willis::model::Model;
 
-use crate::layout::Interface;
+use crate::layout::{Interface, Layout};
 
 /// The train file.
 pub(crate) const TRAIN: &str = "train.toml";
@@ -23,7 +23,7 @@ const MOST: u64 = 256 << 20;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Index {
-    /// `willis-fmu-1`
+    /// `willis-fmu-2`
     pub format: String,
     pub scenario: String,
     pub co_simulation: bool,
@@ -32,12 +32,14 @@ pub(crate) struct Index {
     pub laws: Vec<(String, String)>,
     /// Files of the tables, by the names that the train file has for them.
     pub tables: BTreeMap<String, String>,
+    /// What tells that the runtime has the variables of the description, in the same order.
+    pub variables: String,
     /// What tells that folder and description belong together.
     pub token: String,
 }
 
 /// The only format there is.
-pub(crate) const FORMAT: &str = "willis-fmu-1";
+pub(crate) const FORMAT: &str = "willis-fmu-2";
 
 impl Index {
     pub fn interface(&self) -> Interface {
@@ -57,8 +59,8 @@ pub(crate) struct Resources {
 }
 
 impl Resources {
-    /// Of a model in a scenario.
-    pub fn of(model: &Model, scenario: &str, interface: Interface) -> Self {
+    /// Of a model in a scenario, which has these variables.
+    pub fn of(model: &Model, scenario: &str, interface: Interface, layout: &Layout) -> Self {
         let mut files = vec![(TRAIN.to_owned(), model.to_toml().to_owned())];
         let mut tables = BTreeMap::new();
         for (k, (name, text)) in model.files().enumerate() {
@@ -73,6 +75,7 @@ impl Resources {
             model_exchange: interface.exchanges(),
             laws: model.laws().to_vec(),
             tables,
+            variables: order(layout),
             token: String::new(),
         };
         index.token = token(&index, &files);
@@ -147,7 +150,22 @@ fn token(index: &Index, files: &[(String, String)]) -> String {
         hash.update((text.len() as u64).to_le_bytes());
         hash.update(text);
     }
-    let digits: String = hash.finalize().iter().take(16).map(|b| format!("{b:02x}")).collect();
+    let digits = digits(hash);
     let part = |from: usize, to: usize| &digits[from..to];
     format!("{{{}-{}-{}-{}-{}}}", part(0, 8), part(8, 12), part(12, 16), part(16, 20), part(20, 32))
+}
+
+/// Of the variables in their order: whatever gives a reference its meaning.
+pub(crate) fn order(layout: &Layout) -> String {
+    let mut hash = Sha256::new();
+    for variable in &layout.variables {
+        let text = format!("{:?}", (&variable.name, variable.kind, &variable.role));
+        hash.update((text.len() as u64).to_le_bytes());
+        hash.update(text);
+    }
+    digits(hash)
+}
+
+fn digits(hash: Sha256) -> String {
+    hash.finalize().iter().take(16).map(|b| format!("{b:02x}")).collect()
 }

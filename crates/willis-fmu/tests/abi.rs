@@ -32,6 +32,7 @@ unsafe extern "C" {
     fn fmi2GetReal(c: Handle, references: *const u32, count: usize, values: *mut f64) -> c_int;
     fn fmi2SetReal(c: Handle, references: *const u32, count: usize, values: *const f64) -> c_int;
     fn fmi2GetBoolean(c: Handle, references: *const u32, count: usize, values: *mut c_int) -> c_int;
+    fn fmi2GetInteger(c: Handle, references: *const u32, count: usize, values: *mut c_int) -> c_int;
     fn fmi2GetString(c: Handle, references: *const u32, count: usize, values: *mut *const c_char) -> c_int;
     fn fmi2DoStep(c: Handle, time: f64, length: f64, keeps: c_int) -> c_int;
     fn fmi2Reset(c: Handle) -> c_int;
@@ -43,6 +44,25 @@ unsafe extern "C" {
     fn fmi2SerializedFMUstateSize(c: Handle, state: Handle, size: *mut usize) -> c_int;
     fn fmi2SerializeFMUstate(c: Handle, state: Handle, to: *mut u8, size: usize) -> c_int;
     fn fmi2DeSerializeFMUstate(c: Handle, from: *const u8, size: usize, state: *mut Handle) -> c_int;
+    fn fmi2EnterEventMode(c: Handle) -> c_int;
+    fn fmi2NewDiscreteStates(c: Handle, info: *mut EventInfo) -> c_int;
+    fn fmi2EnterContinuousTimeMode(c: Handle) -> c_int;
+    fn fmi2CompletedIntegratorStep(c: Handle, keeps: c_int, event: *mut c_int, terminate: *mut c_int) -> c_int;
+    fn fmi2SetTime(c: Handle, time: f64) -> c_int;
+    fn fmi2SetContinuousStates(c: Handle, states: *const f64, count: usize) -> c_int;
+    fn fmi2GetContinuousStates(c: Handle, states: *mut f64, count: usize) -> c_int;
+    fn fmi2GetDerivatives(c: Handle, rates: *mut f64, count: usize) -> c_int;
+    fn fmi2GetEventIndicators(c: Handle, indicators: *mut f64, count: usize) -> c_int;
+    fn fmi2GetNominalsOfContinuousStates(c: Handle, nominals: *mut f64, count: usize) -> c_int;
+    fn fmi2GetDirectionalDerivative(
+        c: Handle,
+        unknowns: *const u32,
+        unknown_count: usize,
+        knowns: *const u32,
+        known_count: usize,
+        seed: *const f64,
+        out: *mut f64,
+    ) -> c_int;
     fn fmi3InstantiateModelExchange(
         name: *const c_char,
         token: *const c_char,
@@ -54,7 +74,38 @@ unsafe extern "C" {
     ) -> Handle;
     fn fmi3EnterInitializationMode(c: Handle, has: u8, tolerance: f64, start: f64, has_stop: u8, stop: f64) -> c_int;
     fn fmi3ExitInitializationMode(c: Handle) -> c_int;
+    fn fmi3EnterEventMode(c: Handle) -> c_int;
     fn fmi3EnterContinuousTimeMode(c: Handle) -> c_int;
+    fn fmi3Terminate(c: Handle) -> c_int;
+    fn fmi3UpdateDiscreteStates(
+        c: Handle,
+        again: *mut u8,
+        terminate: *mut u8,
+        nominals: *mut u8,
+        values: *mut u8,
+        has_next: *mut u8,
+        next: *mut f64,
+    ) -> c_int;
+    fn fmi3CompletedIntegratorStep(c: Handle, keeps: u8, event: *mut u8, terminate: *mut u8) -> c_int;
+    fn fmi3SetTime(c: Handle, time: f64) -> c_int;
+    fn fmi3GetEventIndicators(c: Handle, indicators: *mut f64, count: usize) -> c_int;
+    fn fmi3GetNominalsOfContinuousStates(c: Handle, nominals: *mut f64, count: usize) -> c_int;
+    fn fmi3GetNumberOfEventIndicators(c: Handle, count: *mut usize) -> c_int;
+    fn fmi3GetFloat64(c: Handle, references: *const u32, count: usize, values: *mut f64, values_count: usize) -> c_int;
+    fn fmi3GetInt64(c: Handle, references: *const u32, count: usize, values: *mut i64, values_count: usize) -> c_int;
+    fn fmi3GetString(
+        c: Handle,
+        references: *const u32,
+        count: usize,
+        values: *mut *const c_char,
+        values_count: usize,
+    ) -> c_int;
+    fn fmi3GetFMUState(c: Handle, state: *mut Handle) -> c_int;
+    fn fmi3SetFMUState(c: Handle, state: Handle) -> c_int;
+    fn fmi3FreeFMUState(c: Handle, state: *mut Handle) -> c_int;
+    fn fmi3SerializedFMUStateSize(c: Handle, state: Handle, size: *mut usize) -> c_int;
+    fn fmi3SerializeFMUState(c: Handle, state: Handle, to: *mut u8, size: usize) -> c_int;
+    fn fmi3DeserializeFMUState(c: Handle, from: *const u8, size: usize, state: *mut Handle) -> c_int;
     fn fmi3GetContinuousStates(c: Handle, states: *mut f64, count: usize) -> c_int;
     fn fmi3SetContinuousStates(c: Handle, states: *const f64, count: usize) -> c_int;
     fn fmi3GetContinuousStateDerivatives(c: Handle, rates: *mut f64, count: usize) -> c_int;
@@ -73,12 +124,49 @@ unsafe extern "C" {
     fn fmi3FreeInstance(c: Handle);
 }
 
+/// `fmi2EventInfo`
+#[repr(C)]
+#[derive(Debug, Default)]
+struct EventInfo {
+    again: c_int,
+    terminate: c_int,
+    nominals: c_int,
+    values: c_int,
+    has_next: c_int,
+    next: f64,
+}
+
 const OK: c_int = 0;
 const DISCARD: c_int = 2;
 const ERROR: c_int = 3;
 
 /// A motor, a set that loses, a brake that slips and holds, and a load that follows the speed.
 const TRAIN: &str = include_str!("winch.toml");
+
+/// A flywheel on a shaft, whose other end is turned at a speed that jumps.
+const JUMP: &str = r#"
+format = 1
+name = "jump"
+members = ["a", "b"]
+terminals = ["a", "b"]
+inertias = { b = "2 kg m^2" }
+
+[[shaft]]
+name = "s"
+members = ["a", "b"]
+stiffness = "1000 N m/rad"
+damping = "1 N m s/rad"
+
+[[scenario]]
+name = "jump"
+duration = "1 s"
+initial_speeds = { b = "1 rad/s" }
+
+[[scenario.source]]
+name = "motor"
+member = "a"
+speed = { type = "table", points = [["0 s", "1 rad/s"], ["0.5 s", "1 rad/s"], ["0.5 s", "9 rad/s"]] }
+"#;
 
 /// A unit that was unpacked.
 struct Unit {
@@ -114,17 +202,25 @@ fn unpacked(bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
 }
 
 fn packed(version: Version, interface: Interface) -> Vec<u8> {
-    let model = Model::from_toml(TRAIN).unwrap();
+    packed_of(TRAIN, version, interface)
+}
+
+fn packed_of(train: &str, version: Version, interface: Interface) -> Vec<u8> {
+    let model = Model::from_toml(train).unwrap();
     let request = Request { scenario: None, version, interface, library: b"the runtime" };
     pack(&model, &request).unwrap().bytes
 }
 
 impl Unit {
     fn new(name: &str, version: Version, interface: Interface) -> Self {
+        Self::of_train(TRAIN, name, version, interface)
+    }
+
+    fn of_train(train: &str, name: &str, version: Version, interface: Interface) -> Self {
         let folder = std::env::temp_dir().join(format!("willis fmu {name} {}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);
         let mut description = String::new();
-        for (file, bytes) in unpacked(&packed(version, interface)) {
+        for (file, bytes) in unpacked(&packed_of(train, version, interface)) {
             if file == "modelDescription.xml" {
                 description = String::from_utf8(bytes.clone()).unwrap();
             }
@@ -156,6 +252,13 @@ impl Unit {
 
     fn two(&self, kind: c_int) -> Handle {
         unsafe { fmi2Instantiate(c"one".as_ptr(), kind, self.token.as_ptr(), self.resources.as_ptr(), null(), 0, 0) }
+    }
+
+    /// One for a host that integrates and listens.
+    fn three(&self, told: &Told) -> Handle {
+        let (name, environment) = (c"one".as_ptr(), std::ptr::from_ref(told).cast_mut().cast());
+        let (token, resources) = (self.token.as_ptr(), self.resources.as_ptr());
+        unsafe { fmi3InstantiateModelExchange(name, token, resources, 0, 1, environment, Some(listen)) }
     }
 
     /// One that is at its start.
@@ -396,30 +499,22 @@ fn what_leads_nowhere_is_an_error() {
 }
 
 /// What was told.
-static TOLD: Mutex<Vec<String>> = Mutex::new(vec![]);
+type Told = Mutex<Vec<String>>;
 
-unsafe extern "C" fn listen(_: *mut c_void, status: c_int, _: *const c_char, message: *const c_char) {
-    let message = unsafe { CStr::from_ptr(message) }.to_str().unwrap();
-    TOLD.lock().unwrap().push(format!("{status} {message}"));
+unsafe extern "C" fn listen(environment: *mut c_void, status: c_int, category: *const c_char, message: *const c_char) {
+    let told: &Told = unsafe { &*environment.cast() };
+    let [category, message] = [category, message].map(|text| unsafe { CStr::from_ptr(text) }.to_str().unwrap());
+    told.lock().unwrap().push(format!("{status} {category} {message}"));
 }
 
 #[test]
 fn changed_resources_are_told_and_refused() {
     let unit = Unit::new("changed", Version::Three, Interface::Both);
-    let make = || unsafe {
-        fmi3InstantiateModelExchange(
-            c"one".as_ptr(),
-            unit.token.as_ptr(),
-            unit.resources.as_ptr(),
-            0,
-            1,
-            null_mut(),
-            Some(listen),
-        )
-    };
+    let all = Told::default();
+    let make = || unit.three(&all);
     let of = |name: &str| Path::new(unit.resources.to_str().unwrap()).join(name);
     let told = |part: &str| {
-        let told = std::mem::take(&mut *TOLD.lock().unwrap());
+        let told = std::mem::take(&mut *all.lock().unwrap());
         assert!(told.iter().any(|t| t.contains(part)), "{part}: {told:?}");
     };
     let c = make();
@@ -519,4 +614,217 @@ fn many_instances_in_many_threads() {
         }
     });
     unsafe { fmi2FreeInstance(one) };
+}
+
+/// The states of one that integrates, and references.
+fn states_of(c: Handle) -> Vec<f64> {
+    let mut count = 0;
+    assert_eq!(unsafe { fmi3GetNumberOfContinuousStates(c, &raw mut count) }, OK);
+    let mut states = vec![0.0; count];
+    assert_eq!(unsafe { fmi3GetContinuousStates(c, states.as_mut_ptr(), count) }, OK);
+    states
+}
+
+fn derivative(c: Handle, unknown: u32, knowns: &[u32], seed: &[f64]) -> Result<f64, c_int> {
+    let mut out = 0.0;
+    let (count, by) = (knowns.len(), seed.as_ptr());
+    let known = knowns.as_ptr();
+    match unsafe {
+        fmi3GetDirectionalDerivative(c, &raw const unknown, 1, known, count, by, seed.len(), &raw mut out, 1)
+    } {
+        OK => Ok(out),
+        status => Err(status),
+    }
+}
+
+#[test]
+fn a_derivative_takes_states_and_inputs_in_any_order_and_changes_nothing() {
+    let unit = Unit::new("directions", Version::Three, Interface::ModelExchange);
+    let (speed, drive) = (unit.of("state.motor.speed"), unit.of("drive"));
+    let (turning, faster) = (unit.of("der(state.motor.angle)"), unit.of("der(state.motor.speed)"));
+    let told = Told::default();
+    let c = unit.three(&told);
+    let all = || {
+        let of_input = derivative(c, faster, &[drive], &[2.0]).unwrap();
+        assert!(of_input.abs() > 1.0, "{of_input}");
+        for knowns in [[speed, drive], [drive, speed]] {
+            let seed = |of_speed: f64, of_drive: f64| {
+                if knowns[0] == speed { [of_speed, of_drive] } else { [of_drive, of_speed] }
+            };
+            let turns = derivative(c, turning, &knowns, &seed(1.0, 1.0)).unwrap();
+            assert!((turns - 1.0).abs() < 1e-9, "the rate of an angle is a speed: {turns}");
+            let both = derivative(c, faster, &knowns, &seed(0.0, 2.0)).unwrap();
+            assert!((both - of_input).abs() < 1e-9 * of_input.abs(), "{both} {of_input}");
+            // A direction that is none.
+            let before = states_of(c);
+            assert_eq!(derivative(c, faster, &knowns, &seed(1.0, f64::NAN)), Err(ERROR));
+            assert_eq!(states_of(c), before, "what went wrong leaves nothing behind");
+        }
+    };
+    unsafe {
+        assert_eq!(fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), OK);
+        all();
+        // States that a host gave are not lost by that.
+        let mut given = states_of(c);
+        given[0] += 0.25;
+        assert_eq!(fmi3SetContinuousStates(c, given.as_ptr(), given.len()), OK);
+        all();
+        assert_eq!(states_of(c), given);
+        assert_eq!(fmi3ExitInitializationMode(c), OK);
+        all();
+        assert_eq!(fmi3EnterContinuousTimeMode(c), OK);
+        all();
+        assert_eq!(fmi3Terminate(c), OK);
+        all();
+        fmi3FreeInstance(c);
+    }
+}
+
+#[test]
+fn states_are_read_after_the_end_and_set_no_more() {
+    let unit = Unit::new("after", Version::Two, Interface::Both);
+    let c = unit.two(0);
+    let (mut count, mut indicators) = (0, 0);
+    unsafe {
+        assert_eq!(fmi3GetNumberOfContinuousStates(c, &raw mut count), OK);
+        assert_eq!(fmi3GetNumberOfEventIndicators(c, &raw mut indicators), OK);
+    }
+    let read = || unsafe {
+        let (mut of_states, mut of_indicators) = (vec![0.0; count], vec![0.0; indicators]);
+        let x = of_states.as_mut_ptr();
+        [
+            fmi2GetContinuousStates(c, x, count),
+            fmi2GetDerivatives(c, x, count),
+            fmi2GetEventIndicators(c, of_indicators.as_mut_ptr(), indicators),
+            fmi2GetNominalsOfContinuousStates(c, x, count),
+        ]
+    };
+    let (unknown, known, mut out) = (unit.of("der(state.motor.speed)"), unit.of("drive"), 0.0);
+    unsafe {
+        assert_eq!(read(), [ERROR, ERROR, ERROR, OK], "before initialization there are nominal values alone");
+        assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0), OK);
+        assert_eq!(fmi2EnterInitializationMode(c), OK);
+        assert_eq!(fmi2ExitInitializationMode(c), OK);
+        assert_eq!(fmi2NewDiscreteStates(c, &mut EventInfo::default()), OK);
+        assert_eq!(fmi2EnterContinuousTimeMode(c), OK);
+        let states = states_of(c);
+        assert_eq!(fmi2SetTime(c, 0.001), OK);
+        assert_eq!(fmi2SetContinuousStates(c, states.as_ptr(), count), OK);
+        assert_eq!(fmi2Terminate(c), OK);
+        assert_eq!(read(), [OK; 4]);
+        assert_eq!(states_of(c), states);
+        let (unknown, known) = (&raw const unknown, &raw const known);
+        assert_eq!(fmi2GetDirectionalDerivative(c, unknown, 1, known, 1, &2.0, &raw mut out), OK);
+        assert!(out.abs() > 1.0, "{out}");
+        assert_eq!(fmi2SetContinuousStates(c, states.as_ptr(), count), ERROR);
+        assert_eq!(fmi2SetTime(c, 0.002), ERROR);
+        assert_eq!(fmi2NewDiscreteStates(c, &mut EventInfo::default()), ERROR);
+        assert_eq!(fmi2Terminate(c), ERROR);
+        fmi2FreeInstance(c);
+    }
+}
+
+/// The host is told to end, and why is there to be read.
+#[test]
+fn a_motion_that_cannot_go_on_ends_the_run_of_the_host() {
+    let unit = Unit::of_train(JUMP, "jump three", Version::Three, Interface::Both);
+    let told = Told::default();
+    let c = unit.three(&told);
+    let warnings = || told.lock().unwrap().iter().filter(|t| t.contains("logStatusWarning")).count();
+    let [mut again, mut terminate, mut nominals, mut values, mut has_next, mut event] = [9; 6];
+    let mut next = 0.0;
+    let mut update = || unsafe {
+        let [a, t, n, v, h] =
+            [&raw mut again, &raw mut terminate, &raw mut nominals, &raw mut values, &raw mut has_next];
+        (fmi3UpdateDiscreteStates(c, a, t, n, v, h, &raw mut next), *t, *h, next)
+    };
+    unsafe {
+        assert_eq!(fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), OK);
+        assert_eq!(fmi3ExitInitializationMode(c), OK);
+        assert_eq!(update(), (OK, 0, 1, 0.5));
+        assert_eq!(fmi3EnterContinuousTimeMode(c), OK);
+        assert_eq!(fmi3SetTime(c, 0.5), OK);
+        let mut terminate = 9;
+        assert_eq!(fmi3CompletedIntegratorStep(c, 1, &raw mut event, &raw mut terminate), OK);
+        assert_eq!((event, terminate), (1, 0));
+        assert_eq!(fmi3EnterEventMode(c), OK);
+        assert_eq!(warnings(), 0);
+        assert_eq!(update(), (OK, 1, 0, 0.0));
+        assert_eq!(update(), (OK, 1, 0, 0.0));
+        assert_eq!(warnings(), 1, "{:?}", told.lock().unwrap());
+        assert!(told.lock().unwrap().iter().any(|t| t.contains("the run stopped at an impact")));
+        let (verdict, why) = (unit.of("verdict"), unit.of("verdict.why"));
+        let (mut number, mut text) = (0, null());
+        assert_eq!(fmi3GetInt64(c, &raw const verdict, 1, &raw mut number, 1), OK);
+        assert_eq!(number, 6);
+        assert_eq!(fmi3GetString(c, &raw const why, 1, &raw mut text, 1), OK);
+        let words = CStr::from_ptr(text).to_str().unwrap();
+        assert!(words.starts_with("the speed prescribed for a jumps from 1 to 9 rad/s"), "{words}");
+        // A host that goes on all the same is told again.
+        assert_eq!(fmi3EnterContinuousTimeMode(c), OK);
+        assert_eq!(fmi3CompletedIntegratorStep(c, 1, &raw mut event, &raw mut terminate), OK);
+        assert_eq!((event, terminate), (0, 1));
+        let mut indicators = 0;
+        assert_eq!(fmi3GetNumberOfEventIndicators(c, &raw mut indicators), OK);
+        assert_eq!(fmi3GetEventIndicators(c, vec![0.0; indicators].as_mut_ptr(), indicators), OK);
+        assert_eq!(fmi3Terminate(c), OK);
+        assert_eq!(fmi3GetInt64(c, &raw const verdict, 1, &raw mut number, 1), OK);
+        assert_eq!(number, 6);
+        fmi3FreeInstance(c);
+    }
+    let unit = Unit::of_train(JUMP, "jump two", Version::Two, Interface::Both);
+    let c = unit.two(0);
+    let (mut info, verdict, mut number) = (EventInfo::default(), unit.of("verdict"), 0);
+    let [mut event, mut terminate] = [9; 2];
+    unsafe {
+        assert_eq!(fmi2EnterInitializationMode(c), OK);
+        assert_eq!(fmi2ExitInitializationMode(c), OK);
+        assert_eq!(fmi2NewDiscreteStates(c, &raw mut info), OK);
+        assert_eq!((info.terminate, info.has_next, info.next), (0, 1, 0.5));
+        assert_eq!(fmi2EnterContinuousTimeMode(c), OK);
+        assert_eq!(fmi2SetTime(c, 0.5), OK);
+        assert_eq!(fmi2CompletedIntegratorStep(c, 1, &raw mut event, &raw mut terminate), OK);
+        assert_eq!((event, terminate), (1, 0));
+        assert_eq!(fmi2EnterEventMode(c), OK);
+        assert_eq!(fmi2NewDiscreteStates(c, &raw mut info), OK);
+        assert_eq!((info.again, info.terminate, info.has_next), (0, 1, 0));
+        assert_eq!(fmi2GetInteger(c, &raw const verdict, 1, &raw mut number), OK);
+        assert_eq!(number, 6);
+        assert_eq!(fmi2EnterContinuousTimeMode(c), OK);
+        assert_eq!(fmi2CompletedIntegratorStep(c, 1, &raw mut event, &raw mut terminate), OK);
+        assert_eq!((event, terminate), (0, 1));
+        fmi2FreeInstance(c);
+    }
+}
+
+/// What both versions have does the same under both names.
+#[test]
+fn states_and_values_of_version_three() {
+    let unit = Unit::new("both", Version::Two, Interface::CoSimulation);
+    let drum = unit.of("drum.speed");
+    let c = unit.started();
+    steps(c, 0, 20);
+    let (mut state, mut other, mut size, mut value) = (null_mut(), null_mut(), 0, 0.0);
+    unsafe {
+        assert_eq!(fmi3GetFMUState(c, &raw mut state), OK);
+        assert_eq!(fmi3SerializedFMUStateSize(c, state, &raw mut size), OK);
+        let mut bytes = [vec![0; size], vec![0; size]];
+        assert_eq!(fmi3SerializeFMUState(c, state, bytes[0].as_mut_ptr(), size), OK);
+        assert_eq!(fmi2SerializeFMUstate(c, state, bytes[1].as_mut_ptr(), size), OK);
+        assert_eq!(bytes[0], bytes[1]);
+        let before = real(c, drum);
+        steps(c, 20, 30);
+        assert_eq!(fmi3DeserializeFMUState(c, bytes[0].as_ptr(), size, &raw mut other), OK);
+        assert_eq!(fmi3SetFMUState(c, other), OK);
+        assert_eq!(fmi3GetFloat64(c, &raw const drum, 1, &raw mut value, 2), ERROR, "no variable is an array");
+        assert_eq!(fmi3GetFloat64(c, &raw const drum, 1, &raw mut value, 1), OK);
+        assert_eq!(value.to_bits(), before.to_bits());
+        for state in [&raw mut state, &raw mut other, null_mut()] {
+            assert_eq!(fmi3FreeFMUState(c, state), OK);
+        }
+        assert_eq!(fmi3SetFMUState(c, other), ERROR);
+        assert_eq!(fmi3GetNominalsOfContinuousStates(c, &raw mut value, 1), ERROR, "the unit advances itself");
+        assert_eq!(fmi3Terminate(c), OK);
+        fmi2FreeInstance(c);
+    }
 }

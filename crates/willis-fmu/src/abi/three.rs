@@ -5,27 +5,14 @@ use std::ffi::{c_char, c_int, c_void};
 use crate::instance::{Fail, Instance, Status, Stepped, error};
 use crate::layout::Value;
 
-use super::handles::{Tell, back, create, free, keep, kept, release, with};
+use super::handles::{Tell, create, free, with};
 use super::raw::{closed, put, read, room, text};
-use super::two::give_texts;
+use super::{Environment, Handle, Reference, completed, get, get_texts, set};
 
-type Handle = *mut c_void;
-type Reference = u32;
 /// `fmi3Boolean` is C's bool; as a byte, so that one that is neither 0 nor 1 is no undefined behaviour.
 type Boolean = u8;
 
 type Logger = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
-
-/// What belongs to the host, and goes back to it.
-struct Environment(*mut c_void);
-// SAFETY: it is never followed here, only handed back to the host's own function.
-unsafe impl Send for Environment {}
-
-impl Environment {
-    fn pointer(&self) -> *mut c_void {
-        self.0
-    }
-}
 
 fn teller(logger: Option<Logger>, environment: *mut c_void) -> Tell {
     let Some(logger) = logger else { return Box::new(|_, _, _| {}) };
@@ -150,21 +137,6 @@ pub extern "C" fn fmi3EnterInitializationMode(
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi3ExitInitializationMode(c: Handle) -> c_int {
-    with(c, |c| c.instance.exit_initialization())
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3EnterEventMode(c: Handle) -> c_int {
-    with(c, |c| c.instance.enter_event_mode())
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3Terminate(c: Handle) -> c_int {
-    with(c, |c| c.instance.terminate())
-}
-
-#[unsafe(no_mangle)]
 pub extern "C" fn fmi3Reset(c: Handle) -> c_int {
     with(c, |c| {
         c.instance.reset();
@@ -181,23 +153,8 @@ pub unsafe extern "C" fn fmi3GetFloat64(
     values: *mut f64,
     value_count: usize,
 ) -> c_int {
-    with(c, |c| {
-        as_many(count, value_count)?;
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, room(values, count, "values")?) };
-        for (value, reference) in values.iter_mut().zip(references) {
-            *value = c.instance.real(*reference)?;
-        }
-        Ok(())
-    })
-}
-
-/// No variable is an array.
-fn as_many(references: usize, values: usize) -> Result<(), Fail> {
-    if references == values {
-        return Ok(());
-    }
-    Err(error(format!("{references} variables have as many values, not {values}")))
+    // SAFETY: handed on as it is.
+    unsafe { get(c, references, values, [count, value_count], Instance::real) }
 }
 
 #[unsafe(no_mangle)]
@@ -208,12 +165,8 @@ pub unsafe extern "C" fn fmi3SetFloat64(
     values: *const f64,
     value_count: usize,
 ) -> c_int {
-    with(c, |c| {
-        as_many(count, value_count)?;
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, read(values, count, "values")?) };
-        references.iter().zip(values).try_for_each(|(r, x)| c.instance.set(*r, &Value::Real(*x)))
-    })
+    // SAFETY: handed on as it is.
+    unsafe { set(c, references, values, [count, value_count], Value::Real) }
 }
 
 #[unsafe(no_mangle)]
@@ -224,15 +177,8 @@ pub unsafe extern "C" fn fmi3GetInt64(
     values: *mut i64,
     value_count: usize,
 ) -> c_int {
-    with(c, |c| {
-        as_many(count, value_count)?;
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, room(values, count, "values")?) };
-        for (value, reference) in values.iter_mut().zip(references) {
-            *value = c.instance.integer(*reference)?;
-        }
-        Ok(())
-    })
+    // SAFETY: handed on as it is.
+    unsafe { get(c, references, values, [count, value_count], Instance::integer) }
 }
 
 #[unsafe(no_mangle)]
@@ -243,12 +189,8 @@ pub unsafe extern "C" fn fmi3SetInt64(
     values: *const i64,
     value_count: usize,
 ) -> c_int {
-    with(c, |c| {
-        as_many(count, value_count)?;
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, read(values, count, "values")?) };
-        references.iter().zip(values).try_for_each(|(r, x)| c.instance.set(*r, &Value::Integer(*x)))
-    })
+    // SAFETY: handed on as it is.
+    unsafe { set(c, references, values, [count, value_count], Value::Integer) }
 }
 
 #[unsafe(no_mangle)]
@@ -259,12 +201,8 @@ pub unsafe extern "C" fn fmi3GetString(
     values: *mut *const c_char,
     value_count: usize,
 ) -> c_int {
-    with(c, |c| {
-        as_many(count, value_count)?;
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, room(values, count, "values")?) };
-        give_texts(c, references, values)
-    })
+    // SAFETY: handed on as it is.
+    unsafe { get_texts(c, references, values, [count, value_count]) }
 }
 
 /// Functions for kinds of values that no variable has: what they take behind the references, and their names.
@@ -337,54 +275,6 @@ refused! {
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetFMUState(c: Handle, state: *mut Handle) -> c_int {
-    // SAFETY: handed on as it is.
-    unsafe { super::two::fmi2GetFMUstate(c, state) }
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3SetFMUState(c: Handle, state: Handle) -> c_int {
-    with(c, |c| back(c, &*kept(state)?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3FreeFMUState(c: Handle, state: *mut Handle) -> c_int {
-    with(c, |_| {
-        if state.is_null() {
-            return Ok(());
-        }
-        // SAFETY: a place for one pointer.
-        let room = unsafe { room(state, 1, "the state") }?;
-        release(room[0]);
-        room[0] = std::ptr::null_mut();
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializedFMUStateSize(c: Handle, state: Handle, size: *mut usize) -> c_int {
-    // SAFETY: handed on as it is.
-    unsafe { super::two::fmi2SerializedFMUstateSize(c, state, size) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SerializeFMUState(c: Handle, state: Handle, to: *mut u8, size: usize) -> c_int {
-    // SAFETY: handed on as it is.
-    unsafe { super::two::fmi2SerializeFMUstate(c, state, to, size) }
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3DeserializeFMUState(c: Handle, from: *const u8, size: usize, state: *mut Handle) -> c_int {
-    with(c, |c| {
-        // SAFETY: as many bytes as the host says.
-        let bytes = unsafe { read(from, size, "the bytes") }?;
-        let instance = c.instance.of_bytes(bytes)?;
-        // SAFETY: a place for one pointer.
-        unsafe { put(state, keep(instance), "the state") }
-    })
-}
-
-#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3GetDirectionalDerivative(
     c: Handle,
     unknowns: *const Reference,
@@ -430,7 +320,7 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
         // SAFETY: places for one value each.
         unsafe {
             put(again, 0, "whether to go on")?;
-            put(terminate, 0, "the end")?;
+            put(terminate, Boolean::from(settled.over), "the end")?;
             put(nominals, 0, "nominal values")?;
             put(values, Boolean::from(settled.states_changed), "changed states")?;
             put(has_next, Boolean::from(settled.next.is_some()), "the next event")?;
@@ -440,60 +330,14 @@ pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi3EnterContinuousTimeMode(c: Handle) -> c_int {
-    with(c, |c| c.instance.enter_continuous_time_mode())
-}
-
-#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3CompletedIntegratorStep(
     c: Handle,
     _: Boolean,
     event: *mut Boolean,
     terminate: *mut Boolean,
 ) -> c_int {
-    with(c, |c| {
-        let over = c.instance.completed()?;
-        // SAFETY: places for one value each.
-        unsafe {
-            put(event, Boolean::from(over), "the event")?;
-            put(terminate, 0, "the end")
-        }
-    })
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi3SetTime(c: Handle, time: f64) -> c_int {
-    with(c, |c| c.instance.set_time(time))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3SetContinuousStates(c: Handle, states: *const f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.set_states(unsafe { read(states, count, "states") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetContinuousStateDerivatives(c: Handle, rates: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.rates(unsafe { room(rates, count, "rates") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetEventIndicators(c: Handle, indicators: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.indicators(unsafe { room(indicators, count, "indicators") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetContinuousStates(c: Handle, states: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.states(unsafe { room(states, count, "states") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3GetNominalsOfContinuousStates(c: Handle, nominals: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.nominals(unsafe { room(nominals, count, "nominal values") }?))
+    // SAFETY: handed on as it is.
+    unsafe { completed(c, event, terminate) }
 }
 
 #[unsafe(no_mangle)]

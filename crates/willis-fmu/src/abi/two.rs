@@ -2,14 +2,13 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
-use crate::instance::{Instance, Phase, Status, error};
+use crate::instance::{Fail, Instance, Phase, Status, error};
 use crate::layout::Value;
 
-use super::handles::{Component, Tell, back, create, free, keep, kept, release, with};
-use super::raw::{closed, folder, put, read, room, text};
-
-type Handle = *mut c_void;
-type Reference = u32;
+use super::handles::{Tell, create, free, with};
+use super::raw::{closed, folder, put, read, text};
+use super::three::fmi3GetDirectionalDerivative;
+use super::{Environment, Handle, Reference, completed, get, get_texts, set};
 
 type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
 
@@ -33,17 +32,6 @@ pub struct EventInfo {
     values_changed: c_int,
     next_event_time_defined: c_int,
     next_event_time: f64,
-}
-
-/// What belongs to the host, and goes back to it.
-struct Environment(*mut c_void);
-// SAFETY: it is never followed here, only handed back to the host's own function.
-unsafe impl Send for Environment {}
-
-impl Environment {
-    fn pointer(&self) -> *mut c_void {
-        self.0
-    }
 }
 
 /// What the last step can be asked for.
@@ -155,16 +143,6 @@ pub extern "C" fn fmi2EnterInitializationMode(c: Handle) -> c_int {
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi2ExitInitializationMode(c: Handle) -> c_int {
-    with(c, |c| c.instance.exit_initialization())
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2Terminate(c: Handle) -> c_int {
-    with(c, |c| c.instance.terminate())
-}
-
-#[unsafe(no_mangle)]
 pub extern "C" fn fmi2Reset(c: Handle) -> c_int {
     with(c, |c| {
         c.instance.reset();
@@ -175,14 +153,8 @@ pub extern "C" fn fmi2Reset(c: Handle) -> c_int {
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetReal(c: Handle, references: *const Reference, count: usize, values: *mut f64) -> c_int {
-    with(c, |c| {
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, room(values, count, "values")?) };
-        for (value, reference) in values.iter_mut().zip(references) {
-            *value = c.instance.real(*reference)?;
-        }
-        Ok(())
-    })
+    // SAFETY: handed on as it is.
+    unsafe { get(c, references, values, [count, count], Instance::real) }
 }
 
 #[unsafe(no_mangle)]
@@ -192,20 +164,17 @@ pub unsafe extern "C" fn fmi2GetInteger(
     count: usize,
     values: *mut c_int,
 ) -> c_int {
-    with(c, |c| {
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, room(values, count, "values")?) };
-        for (value, reference) in values.iter_mut().zip(references) {
-            let long = c.instance.integer(*reference)?;
-            *value = c_int::try_from(long)
-                .map_err(|_| error(format!("{long} is too large for version 2 of the interface")))?;
-        }
-        Ok(())
-    })
+    // SAFETY: handed on as it is.
+    unsafe {
+        get(c, references, values, [count, count], |instance, reference| {
+            let long = instance.integer(reference)?;
+            c_int::try_from(long).map_err(|_| error(format!("{long} is too large for version 2 of the interface")))
+        })
+    }
 }
 
 /// There are none.
-fn no_booleans(count: usize) -> Result<(), crate::instance::Fail> {
+fn no_booleans(count: usize) -> Result<(), Fail> {
     if count == 0 { Ok(()) } else { Err(error("the unit has no variable that is true or false")) }
 }
 
@@ -221,23 +190,8 @@ pub unsafe extern "C" fn fmi2GetString(
     count: usize,
     values: *mut *const c_char,
 ) -> c_int {
-    with(c, |c| {
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, room(values, count, "values")?) };
-        give_texts(c, references, values)
-    })
-}
-
-/// Texts that live until others are asked for.
-pub(super) fn give_texts(
-    c: &mut Component,
-    references: &[u32],
-    values: &mut [*const c_char],
-) -> Result<(), crate::instance::Fail> {
-    let texts: Result<Vec<_>, _> = references.iter().map(|r| Ok(closed(&c.instance.text(*r)?))).collect();
-    c.texts = texts?;
-    values.iter_mut().zip(&c.texts).for_each(|(value, text)| *value = text.as_ptr());
-    Ok(())
+    // SAFETY: handed on as it is.
+    unsafe { get_texts(c, references, values, [count, count]) }
 }
 
 #[unsafe(no_mangle)]
@@ -247,11 +201,8 @@ pub unsafe extern "C" fn fmi2SetReal(
     count: usize,
     values: *const f64,
 ) -> c_int {
-    with(c, |c| {
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, read(values, count, "values")?) };
-        references.iter().zip(values).try_for_each(|(r, x)| c.instance.set(*r, &Value::Real(*x)))
-    })
+    // SAFETY: handed on as it is.
+    unsafe { set(c, references, values, [count, count], Value::Real) }
 }
 
 #[unsafe(no_mangle)]
@@ -261,11 +212,8 @@ pub unsafe extern "C" fn fmi2SetInteger(
     count: usize,
     values: *const c_int,
 ) -> c_int {
-    with(c, |c| {
-        // SAFETY: both as long as the host says.
-        let (references, values) = unsafe { (read(references, count, "references")?, read(values, count, "values")?) };
-        references.iter().zip(values).try_for_each(|(r, x)| c.instance.set(*r, &Value::Integer(i64::from(*x))))
-    })
+    // SAFETY: handed on as it is.
+    unsafe { set(c, references, values, [count, count], |x| Value::Integer(i64::from(x))) }
 }
 
 #[unsafe(no_mangle)]
@@ -279,69 +227,6 @@ pub extern "C" fn fmi2SetString(c: Handle, _: *const Reference, count: usize, _:
 }
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetFMUstate(c: Handle, state: *mut Handle) -> c_int {
-    with(c, |c| {
-        // SAFETY: a place for one pointer, null or that of a state given before.
-        let before = *unsafe { room(state, 1, "the state") }?.first().unwrap_or(&std::ptr::null_mut());
-        release(before);
-        // SAFETY: the same place.
-        unsafe { put(state, keep(c.instance.clone()), "the state") }
-    })
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SetFMUstate(c: Handle, state: Handle) -> c_int {
-    with(c, |c| back(c, &*kept(state)?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeFMUstate(c: Handle, state: *mut Handle) -> c_int {
-    with(c, |_| {
-        if state.is_null() {
-            return Ok(());
-        }
-        // SAFETY: a place for one pointer.
-        let room = unsafe { room(state, 1, "the state") }?;
-        release(room[0]);
-        room[0] = std::ptr::null_mut();
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: Handle, state: Handle, size: *mut usize) -> c_int {
-    with(c, |_| {
-        let bytes = Instance::clone(&*kept(state)?).bytes();
-        // SAFETY: a place for one number.
-        unsafe { put(size, bytes.len(), "the size") }
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializeFMUstate(c: Handle, state: Handle, to: *mut u8, size: usize) -> c_int {
-    with(c, |_| {
-        let bytes = Instance::clone(&*kept(state)?).bytes();
-        if size < bytes.len() {
-            return Err(error(format!("a state takes {} bytes, and there is room for {size}", bytes.len())));
-        }
-        // SAFETY: as many bytes as the host says.
-        unsafe { room(to, size, "the bytes") }?[..bytes.len()].copy_from_slice(&bytes);
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DeSerializeFMUstate(c: Handle, from: *const u8, size: usize, state: *mut Handle) -> c_int {
-    with(c, |c| {
-        // SAFETY: as many bytes as the host says.
-        let bytes = unsafe { read(from, size, "the bytes") }?;
-        let instance = c.instance.of_bytes(bytes)?;
-        // SAFETY: a place for one pointer.
-        unsafe { put(state, keep(instance), "the state") }
-    })
-}
-
-#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: Handle,
     unknowns: *const Reference,
@@ -351,26 +236,23 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     seed: *const f64,
     out: *mut f64,
 ) -> c_int {
-    with(c, |c| {
-        // SAFETY: as long as the host says.
-        let (unknowns, knowns, seed, out) = unsafe {
-            (
-                read(unknowns, unknown_count, "unknowns")?,
-                read(knowns, known_count, "knowns")?,
-                read(seed, known_count, "the direction")?,
-                room(out, unknown_count, "derivatives")?,
-            )
-        };
-        c.instance.directional(unknowns, knowns, seed, out)
-    })
+    // SAFETY: handed on as it is.
+    unsafe {
+        fmi3GetDirectionalDerivative(
+            c,
+            unknowns,
+            unknown_count,
+            knowns,
+            known_count,
+            seed,
+            known_count,
+            out,
+            unknown_count,
+        )
+    }
 }
 
 // Model exchange.
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2EnterEventMode(c: Handle) -> c_int {
-    with(c, |c| c.instance.enter_event_mode())
-}
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2NewDiscreteStates(c: Handle, info: *mut EventInfo) -> c_int {
@@ -378,7 +260,7 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(c: Handle, info: *mut EventInfo) 
         let settled = c.instance.settle()?;
         let info_now = EventInfo {
             new_discrete_states_needed: 0,
-            terminate_simulation: 0,
+            terminate_simulation: c_int::from(settled.over),
             nominals_changed: 0,
             values_changed: c_int::from(settled.states_changed),
             next_event_time_defined: c_int::from(settled.next.is_some()),
@@ -390,60 +272,14 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(c: Handle, info: *mut EventInfo) 
 }
 
 #[unsafe(no_mangle)]
-pub extern "C" fn fmi2EnterContinuousTimeMode(c: Handle) -> c_int {
-    with(c, |c| c.instance.enter_continuous_time_mode())
-}
-
-#[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     c: Handle,
     _: c_int,
     event: *mut c_int,
     terminate: *mut c_int,
 ) -> c_int {
-    with(c, |c| {
-        let over = c.instance.completed()?;
-        // SAFETY: places for one value each.
-        unsafe {
-            put(event, c_int::from(over), "the event")?;
-            put(terminate, 0, "the end")
-        }
-    })
-}
-
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2SetTime(c: Handle, time: f64) -> c_int {
-    with(c, |c| c.instance.set_time(time))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetContinuousStates(c: Handle, states: *const f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.set_states(unsafe { read(states, count, "states") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetDerivatives(c: Handle, rates: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.rates(unsafe { room(rates, count, "rates") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetEventIndicators(c: Handle, indicators: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.indicators(unsafe { room(indicators, count, "indicators") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetContinuousStates(c: Handle, states: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.states(unsafe { room(states, count, "states") }?))
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetNominalsOfContinuousStates(c: Handle, nominals: *mut f64, count: usize) -> c_int {
-    // SAFETY: as long as the host says.
-    with(c, |c| c.instance.nominals(unsafe { room(nominals, count, "nominal values") }?))
+    // SAFETY: handed on as it is.
+    unsafe { completed(c, event, terminate) }
 }
 
 // Co-simulation.
@@ -478,10 +314,7 @@ pub extern "C" fn fmi2DoStep(c: Handle, time: f64, length: f64, _: c_int) -> c_i
         match stepped.ended {
             false => Ok(()),
             // The host asks whether it is the end.
-            true => Err(crate::instance::Fail {
-                status: Status::Discard,
-                why: format!("the run ended at {} s", stepped.time),
-            }),
+            true => Err(Fail { status: Status::Discard, why: format!("the run ended at {} s", stepped.time) }),
         }
     })
 }
