@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::printable;
 
-use crate::document::{Component, Document, Value};
+use crate::document::{Component, Document, MOST_TOLD, Value};
 
 /// Where an attribute stands: in the model, or in a load case (counted from 1); and the position of its component there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -165,9 +165,6 @@ pub struct Problem {
     pub message: String,
 }
 
-/// Problems and guesses that are listed.
-const MOST_TOLD: usize = 500;
-
 /// The account of one file while it is read.
 pub struct Account<'d> {
     pub document: &'d Document,
@@ -176,14 +173,39 @@ pub struct Account<'d> {
     pub problems: Vec<Problem>,
     /// Problems beyond those that are listed.
     pub more_problems: usize,
+    /// Components of load cases by the number of the case, from 1, and their own.
+    of_cases: HashMap<(usize, i64), usize>,
+    /// The gearbox itself.
+    pub unit: Option<usize>,
 }
 
 impl<'d> Account<'d> {
     pub fn new(document: &'d Document) -> Self {
         let odd = document.odd.iter().map(|o| Problem { place: o.place.clone(), message: o.message.clone() });
-        let problems: Vec<Problem> = odd.take(MOST_TOLD).collect();
-        let more_problems = document.odd.len() - problems.len();
-        Self { document, fates: HashMap::new(), guesses: vec![], problems, more_problems }
+        let mut of_cases = HashMap::new();
+        for (case, all) in document.cases.iter().enumerate() {
+            for (k, c) in all.components.iter().enumerate() {
+                of_cases.entry((case + 1, c.id)).or_insert(k);
+            }
+        }
+        Self {
+            document,
+            fates: HashMap::new(),
+            guesses: vec![],
+            problems: odd.collect(),
+            more_problems: document.more_odd,
+            of_cases,
+            unit: document.components.iter().position(|c| c.kind == "gear_unit"),
+        }
+    }
+
+    /// A component in a load case (counted from 1), or in the model itself.
+    pub fn in_case(&self, case: usize, component: usize) -> Option<At> {
+        if case == 0 {
+            return Some(At::model(component));
+        }
+        let found = self.of_cases.get(&(case, self.document.components[component].id))?;
+        Some(At { scope: case, component: *found })
     }
 
     pub fn component(&self, at: At) -> &'d Component {

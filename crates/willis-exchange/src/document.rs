@@ -6,8 +6,24 @@ use willis::diagnostic::printable;
 pub const MOST_MIB: usize = 64;
 /// Components, relations and load cases are at most so many together.
 pub const MOST_ENTRIES: usize = 100_000;
-/// Attributes are at most so many together.
+/// Attributes and references are at most so many together.
 pub const MOST_ATTRIBUTES: usize = 1_000_000;
+/// Messages of one kind that are kept; the others are counted.
+pub const MOST_TOLD: usize = 500;
+/// Values of a list: nothing that is used has more.
+pub const MOST_LISTED: usize = 1000;
+/// What stands for a list of more.
+pub const LONG_LIST: &str = "a list of more than 1000 values";
+/// Characters that are kept of a name, a type, a unit or a text.
+const MOST_CHARACTERS: usize = 200;
+
+/// A name, a type, a unit or a text, shortened: they are repeated in messages and in the account of attributes.
+pub fn word(text: &str) -> String {
+    match text.char_indices().nth(MOST_CHARACTERS) {
+        Some((at, _)) => format!("{}…", &text[..at]),
+        None => text.to_owned(),
+    }
+}
 
 /// A value as it stands in the file.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,12 +63,15 @@ impl Value {
             ("false", _) => Self::Flag(false),
             // Words that would be read as numbers.
             (_, Ok(x)) if text.bytes().any(|b| b.is_ascii_digit()) || !x.is_finite() => Self::Number(x),
-            _ => Self::Text(text.to_owned()),
+            _ => Self::Text(word(text)),
         }
     }
 
     /// The same of a list.
     pub fn of_texts(all: &[&str]) -> Self {
+        if all.len() > MOST_LISTED {
+            return Self::Other(LONG_LIST);
+        }
         let values: Vec<Self> = all.iter().map(|t| Self::of_text(t)).collect();
         let numbers = values.iter().map(|v| if let Self::Number(x) = v { Some(*x) } else { None });
         if let Some(numbers) = numbers.collect::<Option<Vec<_>>>() {
@@ -109,11 +128,17 @@ pub struct Document {
     pub relations: Vec<Relation>,
     pub cases: Vec<LoadCase>,
     pub odd: Vec<Odd>,
+    /// What is odd beyond that.
+    pub more_odd: usize,
 }
 
 impl Document {
     pub fn odd(&mut self, place: impl Into<String>, message: impl Into<String>) {
-        self.odd.push(Odd { place: place.into(), message: message.into() });
+        if self.odd.len() < MOST_TOLD {
+            self.odd.push(Odd { place: place.into(), message: message.into() });
+        } else {
+            self.more_odd += 1;
+        }
     }
 }
 
@@ -131,9 +156,10 @@ impl Budget {
         if self.entries > MOST_ENTRIES { Err(told()) } else { Ok(()) }
     }
 
+    /// Counts an attribute, or a reference to a component.
     pub fn attribute(&mut self) -> Result<(), String> {
         self.attributes += 1;
-        let told = || format!("it has more than {MOST_ATTRIBUTES} attributes");
+        let told = || format!("it has more than {MOST_ATTRIBUTES} attributes and references");
         if self.attributes > MOST_ATTRIBUTES { Err(told()) } else { Ok(()) }
     }
 }

@@ -35,6 +35,10 @@ pub const VERSION: &str = "1.6";
 const VERSIONS: &[&str] = &["1.0", "1.1", "1.2", "1.3", "1.4", "1.5", "1.6"];
 /// Stages beyond this are no gearbox.
 const MOST_STAGES: usize = 2000;
+/// Load cases at most.
+const MOST_CASES: usize = 1000;
+/// Load cases times what is looked at for each.
+const MOST_LOOKS: usize = 20_000_000;
 
 /// Sums of what a file has and what became of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -216,9 +220,29 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
     let mut bodies = bodies::Bodies::new(&mut account);
     let frame = gears::Frame::new(&mut account);
     let stages = document.relations.iter().filter(|r| r.kind == "stage").count();
+    let too_large = |what: String, hint: &str| -> Result<Imported, Diagnostics> {
+        Err(Diagnostic::new(Code::TooLarge, "", format!("the file has {what}")).hint(hint).into())
+    };
     if stages > MOST_STAGES {
-        let message = format!("the file has {stages} stages; a gearbox has at most {MOST_STAGES}");
-        return Err(Diagnostic::new(Code::TooLarge, "", message).into());
+        let what = format!("{stages} stages; a gearbox has at most {MOST_STAGES}");
+        return too_large(what, "export one gearbox, not a plant");
+    }
+    let (switched, most) = (bodies.switched, bodies::MOST_COUPLINGS);
+    if switched > most {
+        let what = format!("{switched} couplings that are closed in some gears only; a gearbox has at most {most}");
+        return too_large(what, "export them as closed in all gears (`is_engaged`) where they are");
+    }
+    let cases = document.cases.len();
+    if cases > MOST_CASES {
+        let what = format!("{cases} load cases; at most {MOST_CASES} are read");
+        return too_large(what, "join load cases that are nearly alike, and export the spectrum again");
+    }
+    let weight = loads::weight(document);
+    if cases.saturating_mul(weight) > MOST_LOOKS {
+        let what = format!(
+            "{cases} load cases, for each of which {weight} shafts, loads and attributes of them would be looked at"
+        );
+        return too_large(what, "export fewer load cases, or the shafts of one gearbox only");
     }
     let gearing = gears::Gearing::new(&mut account, &bodies, &frame, convention == Convention::Outward);
     let mut written = sets::write(&mut account, &mut bodies, &gearing);
@@ -257,7 +281,7 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
     }
     let body = format!("{}{shifting}{bearings}", written.toml);
     let (bare, body) = settled(&mut account, &head, body, &bearings)?;
-    let (operations, load_cases) = loads.operations(&mut account, &bodies, &frame, bare.train());
+    let (operations, load_cases) = loads.operations(&mut account, &frame, bare.train());
     let missing = missing(oil.is_some(), ideal, &gearing, &bearing_reports, load_cases.is_empty());
     let attributes = account.attributes();
     let many = |fate: Fate| attributes.iter().filter(|a| a.fate == fate).count();

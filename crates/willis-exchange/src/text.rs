@@ -1,5 +1,7 @@
 //! Texts of train files.
 
+use std::collections::{HashMap, HashSet};
+
 use willis::diagnostic::printable;
 
 /// A text in quotes.
@@ -44,8 +46,27 @@ pub fn comment(text: &str) -> String {
     format!("# {line}\n")
 }
 
+/// Names that are given away.
+#[derive(Default)]
+pub struct Taken {
+    names: HashSet<String>,
+    /// The number that the next one of that name is tried with.
+    next: HashMap<String, usize>,
+}
+
+impl Taken {
+    /// One name that none may have.
+    pub fn with(name: &str) -> Self {
+        Self { names: HashSet::from([name.to_owned()]), next: HashMap::new() }
+    }
+
+    pub fn len(&self) -> usize {
+        self.names.len()
+    }
+}
+
 /// A name as trains have it: no dot, nothing that cannot be shown, not too long, and not that of another one.
-pub fn name(wanted: &str, instead: &str, taken: &mut Vec<String>) -> String {
+pub fn name(wanted: &str, instead: &str, taken: &mut Taken) -> String {
     /// Names have 64 characters at most; some are for a number behind.
     const MOST: usize = 56;
     let plain = printable(wanted.trim());
@@ -54,9 +75,17 @@ pub fn name(wanted: &str, instead: &str, taken: &mut Vec<String>) -> String {
         "" | "frame" => instead.to_owned(),
         clean => clean.to_owned(),
     };
-    let free = |n: &String| !taken.contains(n);
-    let found = Some(clean.clone()).filter(free);
-    let found = found.unwrap_or_else(|| (2..).map(|k| format!("{clean} {k}")).find(free).expect("numbers do not end"));
-    taken.push(found.clone());
+    let mut found = clean.clone();
+    if taken.names.contains(&found) {
+        let next = taken.next.entry(clean.clone()).or_insert(2);
+        loop {
+            found = format!("{clean} {next}");
+            *next += 1;
+            if !taken.names.contains(&found) {
+                break;
+            }
+        }
+    }
+    taken.names.insert(found.clone());
     found
 }

@@ -1,7 +1,7 @@
 //! The one file that a zip archive (`.rexsz`) is read for.
 //!
 //! By the directory at the end of the archive (APPNOTE 6.3 of PKWARE, sections 4.3.7, 4.3.12 and 4.3.16): stored and
-//! deflated entries, no encryption, no archive beyond 4 GiB. What unpacks to more than is allowed is refused before it is
+//! deflated entries with their checksums, no encryption, no archive beyond 4 GiB. What unpacks to more than is allowed is refused before it is
 //! unpacked, or where it begins to be more.
 
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
@@ -11,6 +11,15 @@ const ENTRY: &[u8] = b"PK\x01\x02";
 const LOCAL: &[u8] = b"PK\x03\x04";
 /// Entries that are looked at.
 const MOST_ENTRIES: usize = 10_000;
+
+/// CRC-32 (ISO 3309) of bytes.
+fn crc32(bytes: &[u8]) -> u32 {
+    let mut table = [0u32; 256];
+    for (k, entry) in table.iter_mut().enumerate() {
+        *entry = (0..8).fold(k as u32, |x, _| if x & 1 == 1 { x >> 1 ^ 0xedb8_8320 } else { x >> 1 });
+    }
+    !bytes.iter().fold(!0, |crc, b| crc >> 8 ^ table[(crc as u8 ^ b) as usize])
+}
 
 /// Whether it begins as an archive does.
 pub fn is_zip(bytes: &[u8]) -> bool {
@@ -40,6 +49,7 @@ pub fn unpack(bytes: &[u8], endings: &[&str], most: usize) -> Result<(String, Ve
         }
         let field = |offset: usize, n: usize| word(at + offset, n).ok_or_else(broken);
         let (flags, method, packed, whole) = (field(8, 2)?, field(10, 2)?, field(20, 4)?, field(24, 4)?);
+        let sum = field(16, 4)?;
         let (name, extra, comment, local) = (field(28, 2)?, field(30, 2)?, field(32, 2)?, field(42, 4)?);
         let name = bytes.get(at + 46..at + 46 + name).ok_or_else(broken)?;
         at += 46 + name.len() + extra + comment;
@@ -65,10 +75,16 @@ pub fn unpack(bytes: &[u8], endings: &[&str], most: usize) -> Result<(String, Ve
                 .map_err(|_| format!("`{name}` in the zip archive is broken, or larger than {} MiB", most >> 20))?,
             _ => return Err(format!("`{name}` in the zip archive is packed by method {method}; it reads deflate")),
         };
-        return match found.len() == whole {
-            true => Ok((name, found)),
-            false => Err(format!("`{name}` in the zip archive is {} bytes, not {whole} as it says", found.len())),
-        };
+        if found.len() != whole {
+            return Err(format!("`{name}` in the zip archive is {} bytes, not {whole} as it says", found.len()));
+        }
+        if crc32(&found) as usize != sum {
+            return Err(format!(
+                "`{name}` in the zip archive is damaged: its checksum is not the one that the archive tells; get the file \
+                 again"
+            ));
+        }
+        return Ok((name, found));
     }
     Err(format!("the zip archive has no file that ends with {}", endings.join(" or ")))
 }

@@ -335,7 +335,12 @@ fn what_is_no_gearbox_is_refused_with_a_reason() {
     let mut worm = planetary(Some("0.0"), "78.0");
     worm.add("worm_stage", "worm", &[]);
     let wrong = refused(worm.xml().as_bytes()).to_string();
-    assert!(wrong.contains("worm_stage: a worm and its wheel are no train of this program"), "{wrong}");
+    assert!(wrong.contains("worm_stage: a worm and its wheel are no train of Willis"), "{wrong}");
+    let mut bevel = planetary(Some("0.0"), "78.0");
+    bevel.add("bevel_stage", "bevel", &[]);
+    let wrong = refused(bevel.xml().as_bytes()).to_string();
+    assert!(wrong.contains("bevel_stage: bevel stages are not read yet"), "{wrong}");
+    assert!(wrong.contains("`type = \"bevel\"`"), "{wrong}");
     let entity = "<!DOCTYPE m [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;\">]><model version=\"1.6\">&b;</model>";
     for (bytes, why) in [
         (&b""[..], "it is empty"),
@@ -381,22 +386,245 @@ fn thousands_of_components_are_read_in_bounded_time() {
     assert!(read.report.counts.left_out >= 20_000);
 }
 
-/// An archive of one file that is not packed.
-fn stored(name: &str, bytes: &[u8]) -> Vec<u8> {
-    archive(name, bytes, 0, bytes.len())
+#[test]
+fn xml_that_takes_more_than_linear_time_is_refused_before_it_is_parsed() {
+    let text = planetary(Some("0.0"), "78.0").xml();
+    let pairs = |n: usize, name: &str| (0..n).map(|k| format!(" {name}{k}=\"v\"")).collect::<String>();
+    let told = |text: &str, what: &str| {
+        let wrong = refused(text.as_bytes()).to_string();
+        assert!(wrong.contains(what), "{what}: {wrong}");
+    };
+    let root = |more: &str| text.replacen("<model", &format!("<model{more}"), 1);
+    let many = "an element has more than 64 XML attributes";
+    told(&root(&pairs(100, "a")), &format!("line 2: {many}"));
+    told(&root(&pairs(100_000, "a")), many);
+    told(&root(&pairs(65, "xmlns:a")), "line 2: it declares more than 64 namespaces (`xmlns`)");
+    let nested = format!("<model>\n{}{}</model>", "<a\nxmlns:b = 'v'>".repeat(65), "</a>".repeat(65));
+    told(&nested, "line 67: it declares more than 64 namespaces (`xmlns`)");
+    told(&nested.replace("xmlns:b", "b:xmlns"), "it declares more than 64 namespaces (`xmlns`)");
+    // Nothing hides them.
+    let long = format!("<model{}/>", pairs(65, "a"));
+    for before in [
+        "<?xml version=\"?><!--\"?>",
+        "<!--'--><?p \"?>",
+        "<!---->",
+        "<?p <!-- ?>",
+        "<m a='\"'><![CDATA['<!--]]>",
+        "<m a='>'></m >",
+        "<m a='<!--'/>",
+        "<m> text ' \" ",
+    ] {
+        told(&format!("{before}{long}"), many);
+    }
+    // What only looks like them is none.
+    let looks = format!("<a{}/>", pairs(100, "xmlns:a"));
+    for there in [
+        format!("<!-- {looks} -->"),
+        format!("<?p {looks} ?>"),
+        format!("<component id=\"900\" type=\"note\"><attribute id=\"n\"><![CDATA[{looks}]]></attribute></component>"),
+        format!("<component id=\"900\" type=\"note\" name='{}'/>", pairs(100, "xmlns:a")),
+    ] {
+        read(&text.replace("</components>", &format!("{there}</components>")));
+    }
+    read(&root(&pairs(60, "a")));
+    read(&root(&pairs(60, "xmlns:a")));
+    let sections = |n: usize| {
+        let text = "<![CDATA[a]]>".repeat(n);
+        format!("<component id=\"900\" type=\"note\"><attribute id=\"n\">{text}</attribute></component></components>")
+    };
+    told(&text.replace("</components>", &sections(65)), "more than 64 sections `<![CDATA[`");
+    let some = sections(64).replace("</components>", &sections(64).replace("900", "901"));
+    read(&text.replace("</components>", &some));
+    // Memory for each of these is set aside before anything is read.
+    told(&format!("<model>{}", "=".repeat(4_000_001)), "more than 4000000 values");
+    told(&format!("<model>{}", "<".repeat(4_000_001)), "more than 4000000 elements");
+    // Deep is not long.
+    told(&format!("<model>{}{}</model>", "<a>".repeat(100_000), "</a>".repeat(100_000)), "holds no stage");
 }
 
-fn archive(name: &str, data: &[u8], method: u8, whole: usize) -> Vec<u8> {
+#[test]
+fn references_messages_and_texts_are_bounded() {
+    let file = planetary(Some("0.0"), "78.0");
+    let what = "it has more than 1000000 attributes and references";
+    let refs = "<ref/>".repeat(1_000_001);
+    let xml = format!("<model><relations><relation>{refs}</relation></relations></model>");
+    assert!(refused(xml.as_bytes()).to_string().contains(what));
+    let refs = "{},".repeat(1_000_000);
+    let json = format!("{{\"model\": {{\"relations\": [{{\"refs\": [{refs}{{}}]}}]}}}}");
+    let wrong = refused(json.as_bytes()).to_string();
+    assert!(wrong.contains(&format!("this is no REXS file: {what}")), "{wrong}");
+    let entries = "{},".repeat(100_000);
+    let json = format!("{{\"model\": {{\"components\": [{entries}{{}}]}}}}");
+    assert!(refused(json.as_bytes()).to_string().contains("it has more than 100000 components"));
+    // Messages beyond 500 are counted, each line is told.
+    let refs = "<ref/>\n".repeat(700);
+    let xml = file.xml().replace("</relations>", &format!("<relation>\n{refs}</relation>\n</relations>"));
+    let xml = read(&xml);
+    assert_eq!((xml.report.problems.len(), xml.report.more_problems >= 200), (500, true));
+    let lines: Vec<usize> =
+        xml.report.problems.iter().map(|p| p.place.strip_prefix("line ").unwrap().parse().unwrap()).collect();
+    assert!(lines.windows(2).all(|w| w[1] == w[0] + 1), "{lines:?}");
+    let refs = vec!["{}"; 700].join(",");
+    let json = file.json().replace("\"relations\":[", &format!("\"relations\":[{{\"id\":900,\"refs\":[{refs}]}},"));
+    let json = read(&json);
+    assert_eq!((json.report.problems.len(), json.report.more_problems >= 200), (500, true));
+    assert_eq!(json.report.problems[0].place, "model.relations[0]");
+    // Lists and names that nobody reads to their ends.
+    let numbers = vec!["1"; 1001].join("</c><c>");
+    let long = "x".repeat(100_000);
+    let mut file = file;
+    file.add("note", &long, &[("list", "none", &format!("<array><c>{numbers}</c></array>")), ("text", "none", &long)]);
+    let shown = |read: &Imported, id: &str| {
+        read.report.attributes.iter().find(|a| a.attribute == id).map(|a| a.value.clone()).unwrap()
+    };
+    let xml = read(&file.xml());
+    assert_eq!(shown(&xml, "list"), "a list of more than 1000 values");
+    assert!(shown(&xml, "text").len() < 100);
+    let mut wide = file.clone();
+    let note = wide.components.last_mut().unwrap();
+    note.attributes[1].1 = Box::leak(long.into_boxed_str());
+    let xml = read(&wide.xml());
+    assert!(xml.report.attributes.iter().all(|a| a.unit.len() < 1000));
+    let list = |n: usize| {
+        format!(
+            "{{\"model\":{{\"components\":[{{\"id\":900,\"attributes\":[{{\"id\":\"list\",\"floating_point_array\":[{}]}}]}},",
+            vec!["1"; n].join(",")
+        )
+    };
+    let sound = planetary(Some("0.0"), "78.0").json();
+    let rest = |text: &str| {
+        let model: serde_json::Value = serde_json::from_str(text).unwrap();
+        let components = model["model"]["components"].to_string();
+        format!("{},\"relations\":{}}}}}", &components[1..], model["model"]["relations"])
+    };
+    assert_eq!(shown(&read(&(list(1001) + &rest(&sound))), "list"), "a list of more than 1000 values");
+    assert!(shown(&read(&(list(1000) + &rest(&sound))), "list").starts_with("1, 1, 1"));
+}
+
+#[test]
+fn json_is_read_by_the_keys_that_are_known() {
+    let sound = planetary(Some("0.0"), "78.0").json();
+    let body = |toml: &str| toml[toml.find("members").unwrap()..].to_owned();
+    let wanted = body(&read(&sound).toml);
+    // Deeper than any tree of values is read: it is skipped.
+    let deep = format!("{}{}", "[".repeat(5000), "]".repeat(5000));
+    for key in ["\"model\":{", "\"refs\":", "\"attributes\":"] {
+        let more = match key {
+            "\"model\":{" => format!("\"other\":{deep},{key}\"other\":{deep},"),
+            _ => format!("\"other\":{deep},{key}"),
+        };
+        assert_eq!(body(&read(&sound.replacen(key, &more, 1)).toml), wanted, "{key}");
+    }
+    // Values of other types count as empty, numbers may be texts.
+    assert_eq!(body(&read(&sound.replacen("\"id\":1,", "\"id\":\"1\",", 1)).toml), wanted);
+    assert_eq!(body(&read(&sound.replacen("\"id\":1,", "\"id\":1.0,", 1)).toml), wanted);
+    for (text, why) in [
+        (
+            "{\"model\": {\"components\": 7, \"relations\": {\"a\": []}, \"load_spectrum\": [[], 3, null]}}",
+            "holds no stage",
+        ),
+        ("{\"model\": {\"components\": [1, null, \"a\", [], true, {\"id\": {}}]}}", "no number (`id`)"),
+        ("{\"model\": []}", "it has no object `model`"),
+        ("{\"model\": {}} 7", "it is no JSON"),
+        ("[{}]", "it has no object `model`"),
+    ] {
+        let wrong = refused(text.as_bytes()).to_string();
+        assert!(wrong.contains(why), "{why}: {wrong}");
+    }
+    // Load cases in one spectrum and in two.
+    let case = |id: usize| {
+        format!(
+            "{{\"load_cases\":[{{\"id\":{id},\"components\":[{{\"id\":1,\"attributes\":[{{\"id\":\"operating_time_fraction\",\
+             \"unit\":\"%\",\"floating_point\":50}}]}}]}}]}}"
+        )
+    };
+    for (spectrum, many) in [(case(1), 1), (format!("[{},{}]", case(1), case(2)), 2)] {
+        let read = read(&sound.replacen("\"model\":{", &format!("\"model\":{{\"load_spectrum\":{spectrum},"), 1));
+        assert_eq!(read.report.load_cases.iter().map(|c| c.share).collect::<Vec<_>>(), vec![Some(0.5); many]);
+    }
+}
+
+#[test]
+fn couplings_and_load_cases_are_bounded() {
+    let couplings = |n: usize, engaged: &str| {
+        let mut file = planetary(Some("0.0"), "78.0");
+        file.components[0].attributes.push(("number_of_gears", "none", "2".into()));
+        for _ in 0..n {
+            let clutch = file.add("switchable_coupling", "clutch", &[("is_engaged", "none", engaged)]);
+            file.relate("side", &[("assembly", clutch), ("inner_part", 4), ("outer_part", 5)]);
+        }
+        file.xml()
+    };
+    let some = "<array><c>false</c><c>true</c></array>";
+    let too_large = |text: &str, what: &str, hint: &str| {
+        let wrong = refused(text.as_bytes());
+        let d = wrong.iter().next().unwrap();
+        assert_eq!(d.code, willis::diagnostic::Code::TooLarge);
+        assert!(d.message.contains(what), "{wrong}");
+        assert!(wrong.to_string().contains(hint), "{wrong}");
+    };
+    too_large(&couplings(201, some), "201 couplings that are closed in some gears only", "is_engaged");
+    let names: Vec<String> =
+        read(&couplings(3, some)).model.train().shift_elements().iter().map(|e| e.name.clone()).collect();
+    assert_eq!(names, ["clutch", "clutch 2", "clutch 3"]);
+    assert_eq!(
+        refused(couplings(201, "true").as_bytes())
+            .iter()
+            .filter(|d| d.code == willis::diagnostic::Code::TooLarge)
+            .count(),
+        0
+    );
+    let cases = |file: &Rexs, n: usize| {
+        let cases: String = (0..n).map(|k| format!("<load_case id=\"{k}\"/>")).collect();
+        file.xml().replace("</model>", &format!("<load_spectrum>{cases}</load_spectrum></model>"))
+    };
+    let mut file = planetary(Some("0.0"), "78.0");
+    too_large(&cases(&file, 1001), "1001 load cases; at most 1000 are read", "join load cases");
+    assert_eq!(read(&cases(&file, 1000)).report.load_cases.len(), 1000);
+    for _ in 0..20_000 {
+        file.add("shaft", "", &[]);
+    }
+    too_large(&cases(&file, 1000), "1000 load cases, for each of which 20", "export fewer load cases");
+    read(&cases(&file, 10));
+}
+
+#[test]
+fn thousands_of_bearings_of_one_name_get_names_of_their_own() {
+    let mut file = planetary(Some("0.0"), "78.0");
+    for _ in 0..3000 {
+        let bearing = file.add("rolling_bearing", "bearing", &[]);
+        file.relate("side", &[("assembly", bearing), ("inner_part", 4), ("outer_part", 2)]);
+    }
+    let read = read(&file.xml());
+    let names: std::collections::HashSet<&str> = read.report.bearings.iter().map(|b| b.name.as_str()).collect();
+    assert_eq!((names.len(), read.report.bearings.len()), (3001, 3001));
+    assert!(names.contains("bearing") && names.contains("bearing 3000"));
+}
+
+/// An archive of one file that is not packed.
+fn stored(name: &str, bytes: &[u8]) -> Vec<u8> {
+    archive(name, bytes, 0, bytes.len(), crc32(bytes))
+}
+
+/// CRC-32, bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let bit = |x: u32, _| if x & 1 == 1 { x >> 1 ^ 0xedb8_8320 } else { x >> 1 };
+    !bytes.iter().fold(!0, |crc, b| (0..8).fold(crc ^ u32::from(*b), bit))
+}
+
+fn archive(name: &str, data: &[u8], method: u8, whole: usize, sum: u32) -> Vec<u8> {
     let n = |x: usize| (x as u32).to_le_bytes();
     let mut out = b"PK\x03\x04\x14\0\0\0".to_vec();
-    out.extend([method, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    out.extend([method, 0, 0, 0, 0, 0]);
+    out.extend(sum.to_le_bytes());
     out.extend([n(data.len()), n(whole)].concat());
     out.extend([name.len() as u8, 0, 0, 0]);
     out.extend(name.as_bytes());
     out.extend(data);
     let directory = out.len();
     out.extend(b"PK\x01\x02\x14\0\x14\0\0\0");
-    out.extend([method, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
+    out.extend([method, 0, 0, 0, 0, 0]);
+    out.extend(sum.to_le_bytes());
     out.extend([n(data.len()), n(whole)].concat());
     out.extend([name.len() as u8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     out.extend(n(0));
@@ -413,15 +641,24 @@ fn archives_are_bounded() {
     let text = planetary(Some("0.0"), "78.0").xml();
     let refused = |bytes: Vec<u8>| refused(&bytes).to_string();
     assert!(refused(stored("readme.txt", b"text")).contains("has no file that ends with .rexs"));
-    assert!(refused(archive("m.rexs", text.as_bytes(), 12, text.len())).contains("packed by method 12"));
+    assert!(refused(archive("m.rexs", text.as_bytes(), 12, text.len(), 0)).contains("packed by method 12"));
     // It says that it is small, and would unpack to 100 MiB; it says what it is.
     let bomb = miniz_oxide::deflate::compress_to_vec(&vec![b' '; 100 << 20], 1);
-    assert!(refused(archive("m.rexs", &bomb, 8, 1000)).contains("larger than 64 MiB"));
-    assert!(refused(archive("m.rexs", &bomb, 8, 100 << 20)).contains("larger than 64 MiB"));
+    assert!(refused(archive("m.rexs", &bomb, 8, 1000, 0)).contains("larger than 64 MiB"));
+    assert!(refused(archive("m.rexs", &bomb, 8, 100 << 20, 0)).contains("larger than 64 MiB"));
     assert!(refused(stored("m.rexs", &stored("m.rexs", text.as_bytes()))).contains("is an archive itself"));
     let packed = miniz_oxide::deflate::compress_to_vec(text.as_bytes(), 6);
-    let whole = archive("m.rexs", &packed, 8, text.len());
+    let whole = archive("m.rexs", &packed, 8, text.len(), crc32(text.as_bytes()));
     assert_eq!(rexs::read("x", &whole).unwrap().model.train().meshes().len(), 2);
+    // A digit that is another, in an archive of the same size.
+    assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
+    let other = text.replace(">17<", ">19<");
+    for (data, method) in
+        [(other.clone().into_bytes(), 0), (miniz_oxide::deflate::compress_to_vec(other.as_bytes(), 6), 8)]
+    {
+        let damaged = refused(archive("m.rexs", &data, method, text.len(), crc32(text.as_bytes())));
+        assert!(damaged.contains("`m.rexs` in the zip archive is damaged"), "{damaged}");
+    }
     for k in 0..whole.len() {
         let mut spoiled = whole.clone();
         spoiled[k] ^= 0x41;

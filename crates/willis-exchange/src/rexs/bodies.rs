@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::account::{Account, At};
 use crate::document::Relation;
-use crate::text;
+use crate::text::{self, Taken};
 
 /// A coupling that is closed in some gears of the gearbox and open in others.
 pub struct Coupling {
@@ -12,6 +12,13 @@ pub struct Coupling {
     pub bodies: [usize; 2],
     /// Whether it is closed, by gear.
     pub engaged: Vec<bool>,
+}
+
+/// Components that a body is named and directed by.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Kind {
+    Carrier,
+    Shaft,
 }
 
 /// Components that are one rigid body have one root.
@@ -24,12 +31,18 @@ pub struct Bodies {
     /// Gears of the gearbox.
     pub gears: usize,
     pub couplings: Vec<Coupling>,
+    /// Couplings that are closed in some gears; more than [`MOST_COUPLINGS`] are not read.
+    pub switched: usize,
     names: HashMap<usize, String>,
-    taken: Vec<String>,
+    taken: Taken,
+    /// First carrier and first shaft of each body, until another part joins.
+    firsts: Option<HashMap<(usize, Kind), usize>>,
 }
 
 /// Assemblies that are no bodies themselves.
 const LOOSE: &[&str] = &["gear_unit", "planetary_stage", "assembly_group"];
+/// Couplings that are closed in some gears, at most.
+pub const MOST_COUPLINGS: usize = 200;
 /// Gears of a gearbox at most.
 const MOST_GEARS: i64 = 200;
 
@@ -52,7 +65,9 @@ impl Bodies {
             gears: 1,
             couplings: vec![],
             names: HashMap::new(),
-            taken: vec!["frame".into()],
+            taken: Taken::with("frame"),
+            firsts: None,
+            switched: 0,
         };
         bodies.join(account);
         bodies
@@ -84,8 +99,10 @@ impl Bodies {
                 }
             }
         }
-        let unit = components.iter().position(|c| c.kind == "gear_unit").map(At::model);
-        let gears = unit.and_then(|at| account.integer(at, "number_of_gears", "states of the shift table"));
+        let gears = account
+            .unit
+            .map(At::model)
+            .and_then(|at| account.integer(at, "number_of_gears", "states of the shift table"));
         self.gears = gears.unwrap_or(1).clamp(1, MOST_GEARS) as usize;
         let mut switched = vec![];
         for relation in &account.document.relations {
@@ -125,7 +142,9 @@ impl Bodies {
                 switched.push((coupling, [inner, outer], closed));
             }
         }
-        for (coupling, [a, b], engaged) in switched {
+        self.switched = switched.len();
+        let mut taken = Taken::default();
+        for (coupling, [a, b], engaged) in switched.into_iter().take(MOST_COUPLINGS) {
             let bodies = [self.root(a), self.root(b)];
             if bodies[0] == bodies[1] {
                 let message = "it joins parts that are joined anyway and is left out";
@@ -133,8 +152,7 @@ impl Bodies {
                 continue;
             }
             let c = &components[coupling];
-            let taken = &mut self.couplings.iter().map(|c: &Coupling| c.name.clone()).collect();
-            let name = text::name(without_number(&c.name), &format!("coupling {}", c.id), taken);
+            let name = text::name(without_number(&c.name), &format!("coupling {}", c.id), &mut taken);
             self.couplings.push(Coupling { name, bodies, engaged });
         }
     }
@@ -145,6 +163,7 @@ impl Bodies {
             return;
         }
         let (large, small) = if self.size[a] >= self.size[b] { (a, b) } else { (b, a) };
+        self.firsts = None;
         self.parent[small] = large;
         self.size[large] += self.size[small];
     }
@@ -175,10 +194,23 @@ impl Bodies {
         self.by_id.get(id).copied()
     }
 
-    /// Where a shaft is fixed in the body: the first of its components of that type.
-    pub fn first(&self, account: &Account<'_>, root: usize, kind: &str) -> Option<usize> {
-        let components = &account.document.components;
-        (0..components.len()).find(|&k| components[k].kind == kind && self.root(k) == root)
+    /// The first component of that type in a body.
+    pub fn first(&mut self, account: &Account<'_>, root: usize, kind: Kind) -> Option<usize> {
+        let firsts = self.firsts.take().unwrap_or_else(|| {
+            let mut firsts = HashMap::new();
+            for (k, c) in account.document.components.iter().enumerate() {
+                let kind = match c.kind.as_str() {
+                    "planet_carrier" => Kind::Carrier,
+                    "shaft" => Kind::Shaft,
+                    _ => continue,
+                };
+                firsts.entry((self.root(k), kind)).or_insert(k);
+            }
+            firsts
+        });
+        let found = firsts.get(&(root, kind)).copied();
+        self.firsts = Some(firsts);
+        found
     }
 
     /// The name of the member that a body becomes.
@@ -189,7 +221,7 @@ impl Bodies {
         if let Some(name) = self.names.get(&root) {
             return name.clone();
         }
-        let best = ["planet_carrier", "shaft"].iter().find_map(|kind| self.first(account, root, kind));
+        let best = [Kind::Carrier, Kind::Shaft].into_iter().find_map(|kind| self.first(account, root, kind));
         let c = &account.document.components[best.unwrap_or(root)];
         let name = text::name(without_number(&c.name), &format!("{} {}", c.kind, c.id), &mut self.taken);
         self.names.insert(root, name.clone());

@@ -108,11 +108,13 @@ impl Frame {
 /// Types of stages that are no pairs of cylindrical gears.
 fn refused(kind: &str) -> Option<&'static str> {
     Some(match kind {
-        "worm_stage" => "worm_stage: a worm and its wheel are no train of this program",
-        "bevel_stage" | "hypoid_stage" | "spiral_bevel_stage" => {
-            "bevel_stage: bevel and hypoid stages are not read; a bevel set can be written by hand"
+        "worm_stage" => "worm_stage: a worm and its wheel are no train of Willis",
+        "bevel_stage" | "spiral_bevel_stage" => {
+            "bevel_stage: bevel stages are not read yet; Willis has bevel sets, to be written by hand as a set of \
+             `type = \"bevel\"`"
         }
-        "beveloid_stage" => "beveloid_stage: beveloid gears are no gears of this program",
+        "hypoid_stage" => "hypoid_stage: hypoid gears are no gears of Willis",
+        "beveloid_stage" => "beveloid_stage: beveloid gears are no gears of Willis",
         _ => return None,
     })
 }
@@ -470,7 +472,7 @@ pub fn place(account: &mut Account<'_>, component: usize, frame: &Frame) -> Opti
         return None;
     }
     let p = account.vector(at, "support_vector", "geometry.position")?;
-    let unit = account.document.components.iter().find(|c| c.kind == "gear_unit").map(|c| c.id);
+    let unit = account.unit.map(|k| account.document.components[k].id);
     let reference = account.integer(at, "reference_component_for_position", "geometry.position");
     if reference.is_some() && reference != unit {
         account.forget(at, "support_vector");

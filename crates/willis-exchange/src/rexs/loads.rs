@@ -5,9 +5,10 @@ use willis::kinematics::Configuration;
 use willis::train::{MemberId, ShiftElementId, Train};
 
 use crate::account::{Account, At, Is};
+use crate::document::{Component, Document};
 use crate::text::{key, plain, quantity, quoted};
 
-use super::bodies::Bodies;
+use super::bodies::{Bodies, Kind};
 use super::gears::{Frame, dot};
 use super::sets::Written;
 
@@ -43,6 +44,8 @@ pub struct Column {
 struct Source {
     component: usize,
     body: usize,
+    /// The shaft that says where it points.
+    shaft: usize,
     member: String,
 }
 
@@ -60,6 +63,12 @@ fn components_of(account: &Account<'_>, kind: &str) -> Vec<usize> {
     (0..all.len()).filter(|&k| all[k].kind == kind).collect()
 }
 
+/// What every load case is looked at for: components that may tell a speed, a load or a temperature, with what they have.
+pub fn weight(document: &Document) -> usize {
+    let told = |c: &&Component| ["shaft", "external_load", "gear_unit", "gear_casing"].contains(&c.kind.as_str());
+    document.components.iter().filter(told).map(|c| 1 + c.attributes.len()).sum()
+}
+
 impl Loads {
     /// Where torques act.
     pub fn new(account: &mut Account<'_>, bodies: &mut Bodies, written: &Written) -> Self {
@@ -69,8 +78,9 @@ impl Loads {
             let at = At::model(component);
             let body = bodies.root(component);
             let transmits = account.flag(at, "transmits_torque", "terminals");
-            let gives =
-                |id: &str| (0..=cases).any(|case| find(account, case, component).is_some_and(|at| account.has(at, id)));
+            let gives = |id: &str| {
+                (0..=cases).any(|case| account.in_case(case, component).is_some_and(|at| account.has(at, id)))
+            };
             if !transmits.unwrap_or_else(|| gives("torque_around_u_axis") || gives("power")) {
                 continue;
             }
@@ -87,13 +97,14 @@ impl Loads {
             } else {
                 loads.terminals.push(member.clone());
             }
-            loads.torques.push(Source { component, body, member: member.clone() });
+            let shaft = bodies.first(account, body, Kind::Shaft).unwrap_or(component);
+            loads.torques.push(Source { component, body, shaft, member: member.clone() });
         }
         for component in components_of(account, "shaft") {
             let body = bodies.root(component);
             let is_free = !bodies.is_frame(body) && !written.planets.contains_key(&body);
             if let Some(member) = written.rotors.get(&body).filter(|_| is_free) {
-                loads.speeds.push(Source { component, body, member: member.clone() });
+                loads.speeds.push(Source { component, body, shaft: component, member: member.clone() });
             }
         }
         // With less than two there is nothing to analyse.
@@ -117,21 +128,15 @@ impl Loads {
     }
 
     /// Operations of the load cases, or of the model itself, in the text of the train file.
-    pub fn operations(
-        &self,
-        account: &mut Account<'_>,
-        bodies: &Bodies,
-        frame: &Frame,
-        train: &Train,
-    ) -> (String, Vec<LoadCaseReport>) {
+    pub fn operations(&self, account: &mut Account<'_>, frame: &Frame, train: &Train) -> (String, Vec<LoadCaseReport>) {
         let mut out = String::new();
         let mut reports = vec![];
         let cases = account.document.cases.len();
         let base = temperature(account);
         for case in if cases == 0 { 0..=0 } else { 1..=cases } {
             let id = (case > 0).then(|| account.document.cases[case - 1].id);
-            let unit = components_of(account, "gear_unit").first().copied();
-            let of_unit = |account: &Account<'_>, case| unit.and_then(|k| find(account, case, k));
+            let unit = account.unit;
+            let of_unit = |account: &Account<'_>, case| unit.and_then(|k| account.in_case(case, k));
             let share = of_unit(account, case)
                 .and_then(|at| account.number(at, "operating_time_fraction", Is::Share, "share of the load spectrum"))
                 .filter(|s| (0.0..=1.0).contains(s));
@@ -165,7 +170,7 @@ impl Loads {
                 }
             };
             let mut report = LoadCaseReport { load_case: id, operation: None, share, columns: vec![] };
-            match self.operation(account, bodies, frame, train, case, state) {
+            match self.operation(account, frame, train, case, state) {
                 Ok((lines, columns)) => {
                     out.push_str(&format!("\n[[operation]]\nname = {}\n", quoted(&name)));
                     if let Some(state) = state {
@@ -199,7 +204,6 @@ impl Loads {
     fn operation(
         &self,
         account: &mut Account<'_>,
-        bodies: &Bodies,
         frame: &Frame,
         train: &Train,
         case: usize,
@@ -208,13 +212,13 @@ impl Loads {
         let scopes = if case == 0 { vec![0] } else { vec![case, 0] };
         let mut speeds: Vec<(bool, MemberId, String, f64)> = vec![];
         for source in &self.speeds {
-            let found: Vec<At> = scopes.iter().filter_map(|c| find(account, *c, source.component)).collect();
+            let found: Vec<At> = scopes.iter().filter_map(|c| account.in_case(*c, source.component)).collect();
             let speed =
                 found.iter().find_map(|at| account.number(*at, "rotational_speed", Is::Speed, "operation.speeds"));
             let Some(speed) = speed else { continue };
             let defines = found.iter().find_map(|at| account.flag(*at, "defines_speed", "operation.speeds"));
             let Some(member) = train.member(&source.member) else { continue };
-            let speed = self.sign(account, source.component, frame) * speed;
+            let speed = self.sign(account, source.shaft, frame) * speed;
             match speeds.iter().find(|s| s.1 == member) {
                 Some(other) if (other.3 - speed).abs() > 1e-6 * speed.abs() => {
                     let message =
@@ -231,15 +235,14 @@ impl Loads {
             let mut sum: Option<(bool, f64)> = None;
             let mut rank = 2;
             for source in self.torques.iter().filter(|l| l.member == *name) {
-                let found: Vec<At> = scopes.iter().filter_map(|c| find(account, *c, source.component)).collect();
+                let found: Vec<At> = scopes.iter().filter_map(|c| account.in_case(*c, source.component)).collect();
                 let defines = found.iter().find_map(|at| account.flag(*at, "defines_torque", "operation.torques"));
                 let read = |account: &mut Account<'_>, id: &str, is: Is| {
                     found.iter().find_map(|at| account.number(*at, id, is, "operation.torques"))
                 };
                 let torque = read(account, "torque_around_u_axis", Is::Torque);
-                let shaft = bodies.first(account, source.body, "shaft").unwrap_or(source.component);
                 let own = match torque {
-                    Some(t) => Some((false, self.sign(account, shaft, frame) * t)),
+                    Some(t) => Some((false, self.sign(account, source.shaft, frame) * t)),
                     None => read(account, "power", Is::Power).map(|p| (true, p)),
                 };
                 let Some((is_power, x)) = own else { continue };
@@ -316,7 +319,7 @@ impl Loads {
 
 fn temperature_in(account: &mut Account<'_>, case: usize) -> Option<f64> {
     let housing = components_of(account, "gear_casing");
-    let found: Vec<At> = housing.into_iter().filter_map(|k| find(account, case, k)).collect();
+    let found: Vec<At> = housing.into_iter().filter_map(|k| account.in_case(case, k)).collect();
     found.into_iter().find_map(|at| account.number(at, "temperature_lubricant", Is::Temperature, "oil.temperature"))
 }
 
@@ -324,16 +327,6 @@ fn temperature_in(account: &mut Account<'_>, case: usize) -> Option<f64> {
 pub fn temperature(account: &mut Account<'_>) -> Option<f64> {
     let first = usize::from(!account.document.cases.is_empty());
     temperature_in(account, 0).or_else(|| temperature_in(account, first))
-}
-
-/// A component in a load case (counted from 1), or in the model itself.
-fn find(account: &Account<'_>, case: usize, component: usize) -> Option<At> {
-    if case == 0 {
-        return Some(At::model(component));
-    }
-    let id = account.document.components[component].id;
-    let found = account.document.cases[case - 1].components.iter().position(|c| c.id == id)?;
-    Some(At { scope: case, component: found })
 }
 
 /// Shift elements and the shift table.

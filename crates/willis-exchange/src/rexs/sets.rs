@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use crate::account::{Account, At};
 use crate::document::Relation;
-use crate::text::{self, number, quantity, quoted};
+use crate::text::{self, Taken, number, quantity, quoted};
 
 use super::bodies::{Bodies, without_number};
 use super::gears::{Gear, Gearing, Stage};
@@ -36,14 +36,15 @@ struct Writer<'a, 'd> {
     gearing: &'a Gearing,
     out: Written,
     /// Names of sets.
-    taken: Vec<String>,
-    mesh_names: Vec<String>,
+    taken: Taken,
+    mesh_names: Taken,
 }
 
 /// Writes all stages.
 pub fn write(account: &mut Account<'_>, bodies: &mut Bodies, gearing: &Gearing) -> Written {
     let carriers = carriers(account, bodies);
-    let mut writer = Writer { account, bodies, gearing, out: Written::default(), taken: vec![], mesh_names: vec![] };
+    let (taken, mesh_names) = (Taken::default(), Taken::default());
+    let mut writer = Writer { account, bodies, gearing, out: Written::default(), taken, mesh_names };
     let mut by_stage: BTreeMap<usize, Vec<&Stage>> = BTreeMap::new();
     let mut fixed: Vec<&Stage> = vec![];
     for stage in &gearing.stages {

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use willis::catalogue::bearing::{Kind, find, kind_of};
 
 use crate::account::{Account, At, Is};
-use crate::text::{self, quantity, quoted};
+use crate::text::{self, Taken, quantity, quoted};
 
 use super::bodies::{Bodies, without_number};
 use super::gears::{Frame, place};
@@ -177,7 +177,7 @@ pub fn bearings(
     }
     let mut out = String::new();
     let mut reports = vec![];
-    let mut taken = vec![];
+    let mut taken = Taken::default();
     let mut groups: Vec<Group> = groups.into_values().collect();
     groups.sort_by_key(|g| g.component);
     for group in groups {
@@ -256,7 +256,7 @@ pub fn oil(account: &mut Account<'_>, bodies: &Bodies) -> Option<Vec<String>> {
     let c = &document.components[chosen];
     let name = account.text(at, "name", "oil.name");
     let name = name.unwrap_or_else(|| without_number(&c.name).to_owned());
-    let name = text::name(&name, "lubricant of the file", &mut vec![]);
+    let name = text::name(&name, "lubricant of the file", &mut Taken::default());
     let mut lines = vec![
         format!("name = {}", quoted(&name)),
         format!("viscosity_40 = {}", quantity(nu_40, "mm^2/s")),
