@@ -89,7 +89,7 @@ fn scan(text: &str) -> Result<(), String> {
                 ));
             }
             inner.find("]]>").map(|k| k + 12)
-        } else if rest.starts_with("<?xml ") {
+        } else if rest.strip_prefix("<?xml").is_some_and(|rest| rest.starts_with([' ', '\t', '\n', '\r'])) {
             // Its values may hold the end of other instructions.
             outside_quotes(rest, "?>", &mut |_, _| Ok(()))?
         } else if let Some(inner) = rest.strip_prefix("<?") {
