@@ -13,6 +13,8 @@ use std::process::Command;
 use willis::analysis::{Selection, analyze};
 use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
 use willis::dynamics::{Batch, FixedStep, Options, Simulation, simulate};
+use willis::model::Model;
+use willis::study::{Axis, Hold, Question, Sweep};
 use willis::train::{SetSpec, Train};
 
 /// More than this above the recorded count fails.
@@ -32,6 +34,8 @@ const TASKS: &[Task] = &[
     ("automatic-load-gear-5", POINTS, |n| automatic("5", true, n)),
     ("automatic-load-one-point", POINTS, |n| one_point(true, n)),
     ("eight-speed-text-to-answer", 1, cold),
+    ("physical-stage-sweep", SIDE * SIDE, physical_stage),
+    ("physical-eight-speed-sweep", SIDE * SIDE, physical_eight_speed),
     ("set-fixed-step", 20_000, |n| steps(&trains::set(), "pulses", 20_000, false, n)),
     ("set-fixed-step-audited", 20_000, |n| steps(&trains::set(), "pulses", 20_000, true, n)),
     ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, false, n)),
@@ -46,6 +50,9 @@ const TASKS: &[Task] = &[
 
 /// Points of one repetition.
 const POINTS: usize = 4096;
+
+/// Values on each axis of a grid of points with computed losses.
+const SIDE: usize = 32;
 
 /// Runs of a batch, and their steps in one repetition: whole periods of the set, a gear of the automatic.
 const RUNS: usize = 64;
@@ -132,6 +139,32 @@ fn cold(n: usize) {
     for _ in 0..n {
         black_box(analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
     }
+}
+
+/// A grid of speeds and torques as `sweep` answers it, losses by their laws.
+fn physical(text: &str, over: [&str; 2], state: Option<&str>, n: usize) {
+    let model = Model::from_toml(text).unwrap();
+    for _ in 0..n {
+        let question = Question::new(&model, None, state, Hold::AsGiven).unwrap();
+        let axes = over.map(|axis| Axis::parse(axis, &model).unwrap()).to_vec();
+        let sweep = Sweep::new(question, axes, &[]).unwrap();
+        black_box(sweep.rows(0, sweep.len(), &mut Default::default()));
+    }
+}
+
+fn physical_stage(n: usize) {
+    let text = include_str!("../../../examples/fva-planetary-stage.toml");
+    physical(text, ["sun.speed=100..3000 rpm:32", "sun.torque=50..1600 N m:32"], None, n);
+}
+
+/// An automatic with a drag on each shaft.
+fn physical_eight_speed(n: usize) {
+    let mut text = include_str!("../../../examples/zf-8hp70.toml").to_owned();
+    for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
+        let values = "coulomb = \"0.2 N m\"\nviscous = \"1e-3 N m s/rad\"";
+        text += &format!("\n[[drag]]\nname = \"drag of {m}\"\nmembers = [\"{m}\"]\n{values}\n");
+    }
+    physical(&text, ["input.speed=1000..5000 rpm:32", "input.torque=50..700 N m:32"], Some("3"), n);
 }
 
 /// Whole runs in steps of 1 ms, modes known; with the energies counted or without.

@@ -163,7 +163,8 @@ impl Rational {
             Repr::Small(r) => {
                 let (n, d) = (*r.numer(), *r.denom());
                 if n.unsigned_abs() < 1 << 53 && d < 1 << 53 {
-                    n as f64 / d as f64
+                    // Of 64 bits processors have a conversion, of 128 they have none.
+                    n as i64 as f64 / d as i64 as f64
                 } else {
                     self.big().to_f64().unwrap_or(f64::NAN)
                 }

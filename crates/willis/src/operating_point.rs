@@ -31,11 +31,12 @@ mod support;
 use std::borrow::Cow;
 use std::sync::OnceLock;
 
+use num_dual::Dual;
 use serde::{Deserialize, Serialize};
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Coupling, Motion};
-use crate::losses::{Outside, mesh_friction::MeshFriction, rolling::Rolling};
+use crate::losses::{Outside, bearing::Turning, mesh_friction::MeshFriction, rolling::Rolling};
 use crate::named::Named;
 use crate::power_flow::{Drag, Flow, MeshFlow};
 use crate::real::{self, Real};
@@ -44,6 +45,7 @@ use crate::train::{
 };
 
 pub use bearing::BearingReport;
+pub(crate) use bearing::BearingState;
 pub use contact::{ContactReport, Regime};
 pub use forces::ShaftLoad;
 pub(crate) use motion::{LEAST_SPEED, Place};
@@ -237,9 +239,13 @@ pub(crate) struct Approach {
     idle: Option<Idle>,
 }
 
-/// Drags of a motion that do not depend on the load.
+/// What of the losses of a motion no load changes.
 #[derive(Clone, Debug)]
-pub(crate) struct Idle(Vec<(Source, Drag)>);
+pub(crate) struct Idle<R: Real = f64> {
+    drags: Vec<(Source, Drag<R>)>,
+    /// Of the friction of each bearing; none without an oil.
+    bearings: Vec<Option<Turning<Dual<R>>>>,
+}
 
 impl Approach {
     /// The losses to begin with.
@@ -255,7 +261,7 @@ impl Approach {
         Self { step, rounds, idle: None }
     }
 
-    /// With the drags that do not depend on the load.
+    /// With what no load changes.
     pub fn with(self, idle: Idle) -> Self {
         Self { idle: Some(idle), ..self }
     }
@@ -356,13 +362,14 @@ pub(crate) struct Physics<'t, R: Real = f64> {
     least_speed: f64,
 }
 
-/// What laws say of a solved step beside its losses.
-pub(crate) struct Reports {
-    /// The contact of each mesh with teeth.
-    pub contacts: Named<ContactReport>,
-    pub bearings: Named<BearingReport>,
-    /// Loads of the shafts on bearings, by member.
-    pub shafts: Named<ShaftLoad>,
+/// What laws say of a solved step beside its losses: what a reader must be warned of follows from it.
+pub(crate) struct Strains {
+    /// The largest Hertzian pressure in each mesh with teeth, Pa.
+    pub pressures: Vec<(usize, f64)>,
+    /// By place; none without an oil.
+    pub bearings: Vec<BearingState>,
+    /// Loads of the shafts on bearings.
+    pub shafts: Vec<(MemberId, ShaftLoad)>,
     /// Where laws were used outside their ranges.
     pub extrapolations: Vec<Extrapolation>,
 }
@@ -532,6 +539,15 @@ impl<'t, R: Real> Physics<'t, R> {
         self.evaluate_with(speeds, meshes, known, &self.without_load(speeds, meshes, known))
     }
 
+    /// What no load changes; of the meshes only the speeds count.
+    fn without_load(&self, speeds: &[R], meshes: &[MeshFlow<R>], known: &dyn Fn(MemberId) -> bool) -> Idle<R> {
+        let bearings = match self.oil {
+            Some(_) => (0..self.train.bearings.len()).map(|k| self.turning(k, speeds)).collect(),
+            None => vec![],
+        };
+        Idle { drags: self.drags_without_load(speeds, meshes, known), bearings }
+    }
+
     /// Where a drag resists, if it does.
     fn drag_between(
         &self,
@@ -547,7 +563,7 @@ impl<'t, R: Real> Physics<'t, R> {
     }
 
     /// The drags that do not depend on the load; of the meshes only the speeds count.
-    fn without_load(
+    fn drags_without_load(
         &self,
         speeds: &[R],
         meshes: &[MeshFlow<R>],
@@ -598,13 +614,13 @@ impl<'t, R: Real> Physics<'t, R> {
         all
     }
 
-    /// The losses for torques and speeds, where the [drags that do not depend on the load](Self::without_load) are known.
+    /// The losses for torques and speeds, where it is known what [no load changes](Self::without_load).
     fn evaluate_with(
         &self,
         speeds: &[R],
         meshes: &[MeshFlow<R>],
         known: &dyn Fn(MemberId) -> bool,
-        without_load: &[(Source, Drag<R>)],
+        without_load: &Idle<R>,
     ) -> Step<R> {
         let mut step = Step::blank(&self.train);
         let none = R::from(0.0);
@@ -644,8 +660,8 @@ impl<'t, R: Real> Physics<'t, R> {
         let reactions = self.oil.as_ref().map(|_| self.reactions(speeds, meshes));
         let carried = reactions.iter().flat_map(|r| &r.places);
         for ((k, mount), carried) in self.train.bearings.iter().enumerate().zip(carried) {
-            let bearing::Friction { speed, mut torque, mut proportional, .. } =
-                self.bearing(k, speeds, carried, &mut |_| {});
+            let turning = without_load.bearings[k].as_ref();
+            let bearing::Friction { speed, mut torque, mut proportional } = self.bearing(k, speeds, carried, turning);
             let loading = &carried.loading;
             let [by_load, idle] = [LossPart::BearingLoad, LossPart::BearingNoLoad].map(|part| self.factor(part));
             torque = torque * idle + proportional * (by_load - idle);
@@ -670,8 +686,8 @@ impl<'t, R: Real> Physics<'t, R> {
             }
             drag(Source::Bearing(k), mount.members, torque);
         }
-        step.sources.extend(without_load.iter().map(|d| d.0));
-        step.drags.extend(without_load.iter().map(|d| d.1));
+        step.sources.extend(without_load.drags.iter().map(|d| d.0));
+        step.drags.extend(without_load.drags.iter().map(|d| d.1));
         step.meshes = losses;
         step.bearings = bearings;
         step
@@ -750,15 +766,15 @@ impl<'t, R: Real> Physics<'t, R> {
 }
 
 impl Physics<'_> {
-    /// The drags of a motion that do not depend on the load; any flow of it will do.
+    /// What of the losses of a motion no load changes; any flow of it will do.
     pub fn idle(&self, flow: &Flow, motion: &Motion) -> Idle {
-        Idle(self.without_load(&flow.speeds, &flow.meshes, &|m| motion.speeds[m.0].is_some()))
+        self.without_load(&flow.speeds, &flow.meshes, &|m| motion.speeds[m.0].is_some())
     }
 
     /// The losses that the laws give for the torques and speeds of a flow.
     pub fn step(&self, flow: &Flow, motion: &Motion, idle: &Idle) -> Step {
         let known = |m: MemberId| motion.speeds[m.0].is_some();
-        let mut step = self.evaluate_with(&flow.speeds, &flow.meshes, &known, &idle.0);
+        let mut step = self.evaluate_with(&flow.speeds, &flow.meshes, &known, idle);
         let mut bus = self.train.members.len();
         for v in &flow.variators {
             let VariatorPath::Bus { machines, standby, .. } = &self.train.variators[v.variator].path else { continue };
@@ -869,23 +885,36 @@ impl Physics<'_> {
     }
 
     /// What the laws say of a solved step beside its losses.
-    pub fn reports(&self, step: &Step, flow: &Flow) -> Reports {
-        let mut beyond = Some(vec![]);
-        let contacts = self.contacts(step, flow, &mut beyond);
-        let mut extrapolations = beyond.unwrap_or_default();
+    pub fn strains(&self, step: &Step, flow: &Flow) -> Strains {
+        let mut extrapolations = vec![];
+        let mut pressures = vec![];
+        for m in &flow.meshes {
+            let mesh = &self.train.meshes[m.mesh.0];
+            let Some(teeth) = &mesh.teeth else { continue };
+            pressures.push((m.mesh.0, self.largest_pressure(mesh, teeth, m)));
+            self.contact_extrapolations(mesh, teeth, m, &mut extrapolations);
+        }
         let (bearings, shafts) = self.bearings(step, flow, &mut extrapolations);
         self.wet_extrapolations(&flow.speeds, &mut extrapolations);
-        Reports { contacts, bearings, shafts, extrapolations }
+        Strains { pressures, bearings, shafts, extrapolations }
+    }
+
+    /// The bearings of a solved step for people.
+    pub fn bearing_reports(&self, strains: &Strains) -> Named<BearingReport> {
+        let own = |(k, state): (usize, &BearingState)| {
+            (self.train.bearings[k].name.clone(), self.bearing_report(&self.train, k, state))
+        };
+        Named(strains.bearings.iter().enumerate().map(own).collect())
     }
 
     /// The contact of each mesh with teeth, with its losses in this flow.
-    fn contacts(&self, step: &Step, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> Named<ContactReport> {
+    pub fn contacts(&self, step: &Step, flow: &Flow) -> Named<ContactReport> {
         let mut all = Vec::new();
         for (m, own) in flow.meshes.iter().zip(&step.meshes) {
             let mesh = &self.train.meshes[m.mesh.0];
             let Some(teeth) = &mesh.teeth else { continue };
             // Loads of this flow, with the friction it was solved with.
-            let mut contact = self.contact(mesh, teeth, m, beyond);
+            let mut contact = self.contact(mesh, teeth, m);
             contact.friction = own.friction;
             let bearings: f64 = own.bearings.iter().map(|b| b.1).sum();
             contact.sliding_loss_w = (m.loss - m.potential_power * bearings).max(0.0);
@@ -897,32 +926,29 @@ impl Physics<'_> {
         Named(all)
     }
 
-    /// The bearings of a solved step, with their losses, and the loads of the shafts on them, by member.
+    /// The bearings of a solved step, with their losses, and the loads of the shafts on them.
     fn bearings(
         &self,
         step: &Step,
         flow: &Flow,
         beyond: &mut Vec<Extrapolation>,
-    ) -> (Named<BearingReport>, Named<ShaftLoad>) {
+    ) -> (Vec<BearingState>, Vec<(MemberId, ShaftLoad)>) {
         if self.oil.is_none() {
-            return (Named(vec![]), Named(vec![]));
+            return (vec![], vec![]);
         }
-        let mut all = Vec::new();
+        let mut all = Vec::with_capacity(step.bearings.len());
         let reactions = self.reactions(&flow.speeds, &flow.meshes);
         for ((k, torque), carried) in step.bearings.iter().enumerate().zip(&reactions.places) {
-            let by_load = flow.meshes.iter().zip(&step.meshes).flat_map(|(m, own)| {
-                own.bearings.iter().filter(|b| b.0 == k).map(|b| b.1 * m.potential_power).collect::<Vec<_>>()
-            });
+            let mut loss = 0.0;
+            for (m, own) in flow.meshes.iter().zip(&step.meshes) {
+                own.bearings.iter().filter(|b| b.0 == k).for_each(|b| loss += b.1 * m.potential_power);
+            }
             let drags = step.sources.iter().zip(&flow.drag_losses);
-            let rest = drags.filter(|(s, _)| **s == Source::Bearing(k)).map(|(_, loss)| *loss);
-            let loss_w = by_load.chain(rest).sum::<f64>() + 0.0;
+            drags.filter(|(s, _)| **s == Source::Bearing(k)).for_each(|(_, own)| loss += own);
             // Loads of this flow, with the torque it was solved with.
-            let report = self.bearing_report(k, &flow.speeds, carried, beyond);
-            let report = BearingReport { torque_n_m: *torque, loss_w, ..report };
-            all.push((self.train.bearings[k].name.clone(), report));
+            all.push(self.bearing_state(k, &flow.speeds, carried, [*torque, loss + 0.0], beyond));
         }
-        let named = |(m, load)| (self.train.member_name(m).to_owned(), load);
-        (Named(all), Named(reactions.shafts.into_iter().map(named).collect()))
+        (all, reactions.shafts)
     }
 
     /// Every torque between two members beside those of the teeth.

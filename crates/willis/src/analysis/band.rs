@@ -299,8 +299,8 @@ impl Base<'_> {
             let power = x.torque * agreed.flow.speeds[x.member.0];
             *(if power > 0.0 { &mut given } else { &mut taken }) += power.abs();
         }
-        let reports = physics.reports(&agreed.step, &agreed.flow);
-        let outside = reports.extrapolations.iter().map(|x| (x.family.to_owned(), x.law.to_owned())).collect();
+        let strains = physics.strains(&agreed.step, &agreed.flow);
+        let outside = strains.extrapolations.iter().map(|x| (x.family.to_owned(), x.law.to_owned())).collect();
         let loss_w = given - taken;
         (given > 0.0).then(|| Seen { efficiency: (taken / given).clamp(0.0, 1.0), loss_w, outside })
     }

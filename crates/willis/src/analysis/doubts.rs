@@ -6,8 +6,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::catalogue::bearing::{Bearing, Kind};
-use crate::named::Named;
-use crate::operating_point::{BearingReport, ContactReport, ShaftLoad};
+use crate::operating_point::{BearingState, Strains};
 use crate::train::Train;
 
 /// Largest Hertzian pressure of hardened steel teeth, Pa: flanks yield beyond it (ISO 6336-5: endurance 1.2 to 1.65 GPa,
@@ -62,8 +61,8 @@ pub struct Doubt {
 }
 
 /// Equivalent static load, N: what ISO 76 gives for balls, what loads the rollers for the others.
-fn static_load(bearing: &Bearing, b: &BearingReport) -> f64 {
-    let (radial, axial) = (b.radial_load_n, b.axial_load_n);
+fn static_load(bearing: &Bearing, b: &BearingState) -> f64 {
+    let (radial, axial) = (b.radial_load, b.axial_load);
     match (bearing.takes_radial_load(), bearing.kind.is_ball()) {
         (false, _) => axial,
         (true, true) => radial.max(0.6 * radial + 0.5 * axial),
@@ -75,25 +74,19 @@ fn static_load(bearing: &Bearing, b: &BearingReport) -> f64 {
     }
 }
 
-/// What is doubted in a solution with this power into the train, contacts of teeth, bearings and shafts.
-pub(super) fn doubts(
-    train: &Train,
-    input_power_w: f64,
-    contacts: &Named<ContactReport>,
-    bearings: &Named<BearingReport>,
-    shafts: &Named<ShaftLoad>,
-) -> Vec<Doubt> {
+/// What is doubted in a solution with this power into the train.
+pub(super) fn doubts(train: &Train, input_power_w: f64, strains: &Strains) -> Vec<Doubt> {
     let mut all = Vec::new();
     let mut doubt = |kind: DoubtKind, at: &str, value: f64, limit: f64| {
         if value > limit && value.is_finite() {
             all.push(Doubt { kind, at: at.to_owned(), value, limit });
         }
     };
-    for (name, c) in contacts.iter() {
-        doubt(DoubtKind::ContactPressure, name, c.pressure_pa, PRESSURE);
+    for (mesh, pressure) in &strains.pressures {
+        doubt(DoubtKind::ContactPressure, &train.meshes[*mesh].name, *pressure, PRESSURE);
     }
-    for ((name, b), mount) in bearings.iter().zip(&train.bearings) {
-        let bearing = &mount.bearing;
+    for (b, mount) in strains.bearings.iter().zip(&train.bearings) {
+        let (name, bearing) = (&mount.name, &mount.bearing);
         if let Some(rating) = bearing.static_rating {
             doubt(DoubtKind::BearingLoad, name, static_load(bearing, b) / rating, 1.0);
         }
@@ -101,19 +94,20 @@ pub(super) fn doubts(
             let mean = (bearing.bore + bearing.outside_diameter) / 2.0;
             let times = |speed: f64| speed * 30.0 / std::f64::consts::PI * mean * 1e3;
             let limit = bearing.limiting_speed.map_or(SPEED, times);
-            doubt(DoubtKind::BearingSpeed, name, times(b.speed_rad_s), limit);
+            doubt(DoubtKind::BearingSpeed, name, times(b.speed), limit);
         }
-        if input_power_w > 0.0 && b.loss_w > LEAST_LOSS {
-            doubt(DoubtKind::BearingLoss, name, b.loss_w / input_power_w, LOSS);
+        if input_power_w > 0.0 && b.loss > LEAST_LOSS {
+            doubt(DoubtKind::BearingLoss, name, b.loss / input_power_w, LOSS);
         }
         if !bearing.takes_thrust() {
-            doubt(DoubtKind::ThrustOnFloating, name, b.axial_load_n, UNCARRIED * b.radial_load_n.max(1.0));
+            doubt(DoubtKind::ThrustOnFloating, name, b.axial_load, UNCARRIED * b.radial_load.max(1.0));
         }
     }
     // Without positions every force acts in one plane, and what tilts a shaft is not known.
     let placed = train.bearings.iter().any(|b| b.position.is_some())
         || train.meshes.iter().any(|m| m.teeth.as_ref().is_some_and(|t| t.position.is_some()));
-    for (member, load) in shafts.iter() {
+    for (member, load) in &strains.shafts {
+        let member = train.member_name(*member);
         let [force, thrust, tilting] = [load.radial_n, load.thrust_n.abs(), load.tilting_n_m];
         let size = force.max(thrust);
         doubt(DoubtKind::UncarriedThrust, member, load.uncarried_thrust_n.abs(), (UNCARRIED * size).max(1.0));

@@ -7,7 +7,6 @@ use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
 use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
 
 use super::balance::{Balance, Branch, Setting};
-use super::doubts::doubts;
 use super::loads::Loads;
 use super::rounds::{Agreed, Rounds};
 use super::solution::Frame;
@@ -198,9 +197,6 @@ pub(super) fn settle_at<'t>(
         .collect();
     let (mut all, extrapolations): (Vec<SolutionReport>, Vec<_>) =
         frames.iter().zip(&branches).map(|(f, b)| f.solution(&b.solution)).unzip();
-    for s in &mut all {
-        s.doubts = doubts(train, s.input_power_w, &s.contacts, &s.bearings, &s.shaft_loads);
-    }
     all.sort_by(|a, b| a.efficiency.partial_cmp(&b.efficiency).unwrap_or(std::cmp::Ordering::Equal));
     if !all.iter().all(finite) {
         return Err(vec![Refusal::TorqueTooLarge]);

@@ -234,9 +234,9 @@ impl<'t> PointSeries<'t> {
             return None;
         }
         let step = &agreed.step;
-        let reports = physics.reports(step, &flow);
-        let doubts = doubts(train, flow.input_power, &reports.contacts, &reports.bearings, &reports.shafts);
-        let outside = OutsideLaw::of(&reports.extrapolations);
+        let strains = physics.strains(step, &flow);
+        let doubts = doubts(train, flow.input_power, &strains);
+        let outside = OutsideLaw::of(&strains.extrapolations);
         let why = takes_all.then_some(Why::LossesTakeAll);
         let findings = (why.iter().cloned().map(Finding::Why))
             .chain(outside.iter().cloned().map(Finding::Outside))

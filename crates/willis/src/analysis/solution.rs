@@ -2,11 +2,12 @@
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
-use crate::operating_point::{Convergence, Extrapolation, LossKind, Physics, Step};
+use crate::operating_point::{Convergence, Extrapolation, LossKind, Physics, ShaftLoad, Step};
 use crate::power_flow::{Drag, Flow};
 use crate::statics::{Equilibrium, Solution, torque_exact};
 use crate::train::{FRAME, MemberId, MemberKind, Operation};
 
+use super::doubts::doubts;
 use super::loads::Loads;
 use super::rounds::Agreed;
 use super::{
@@ -47,10 +48,16 @@ impl Frame<'_> {
         let members =
             (1..train.members.len()).map(|m| (train.members[m].name.clone(), self.member(MemberId(m), &flow, &held)));
         let members = Named(members.collect());
-        let reports = self.physics.map(|(p, (step, _))| p.reports(step, &flow));
-        let extrapolations = reports.as_ref().map(|t| t.extrapolations.clone()).unwrap_or_default();
-        let (contacts, bearings, shaft_loads) =
-            reports.map_or_else(Default::default, |t| (t.contacts, t.bearings, t.shafts));
+        let strains = self.physics.map(|(p, (step, _))| p.strains(step, &flow));
+        let doubts = strains.as_ref().map_or_else(Vec::new, |s| doubts(train, flow.input_power, s));
+        let contacts = self.physics.map_or_else(Named::default, |(p, (step, _))| p.contacts(step, &flow));
+        let (mut bearings, mut shaft_loads, mut extrapolations) = Default::default();
+        if let (Some((physics, _)), Some(strains)) = (self.physics, strains) {
+            bearings = physics.bearing_reports(&strains);
+            let named = |(m, load): (MemberId, ShaftLoad)| (train.member_name(m).to_owned(), load);
+            shaft_loads = Named(strains.shafts.into_iter().map(named).collect());
+            extrapolations = strains.extrapolations;
+        }
         let meshes = flow.meshes.iter().map(|f| {
             let mesh = &train.meshes[f.mesh.0];
             let report = MeshReport {
@@ -109,7 +116,7 @@ impl Frame<'_> {
             losses_w,
             sources,
             contacts,
-            doubts: vec![],
+            doubts,
             shaft_loads,
             bearings,
             drags: self.physics.map(|(p, (step, _))| p.drags(step, &flow)).unwrap_or_default(),

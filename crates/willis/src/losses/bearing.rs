@@ -57,6 +57,23 @@ family! {
 }
 
 pub use skf::Parts;
+pub(crate) use skf::Turning;
+
+impl BearingTorque {
+    /// What of the torque no load changes, for laws that have much of that; else `None`.
+    pub(crate) fn turning<D: Real>(&self, duty: &BearingDuty<D>) -> Option<Turning<D>> {
+        match self {
+            Self::Skf(law) => law.turning(duty),
+            Self::Skf6000(law) => law.turning(duty),
+            _ => None,
+        }
+    }
+
+    /// [`eval`](Self::eval), to the last bit, where what no load changes is known.
+    pub(crate) fn eval_turning<D: Real>(&self, duty: &BearingDuty<D>, turning: Option<&Turning<D>>) -> D {
+        turning.map_or_else(|| self.eval(duty), |turning| turning.parts(duty).total())
+    }
+}
 
 impl BearingDuty<f64> {
     /// A cylindrical roller bearing NU 308 (40 × 90 × 23 mm) under 5 kN at 1500 r/min in an oil bath

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::catalogue::bearing::Kind;
 use crate::losses::Outside;
-use crate::losses::bearing::{BearingDuty, BearingTorque, Palmgren, Supply};
+use crate::losses::bearing::{BearingDuty, BearingTorque, Palmgren, Supply, Turning};
 use crate::losses::plain_bearing::{Journal, PlainBearing};
 use crate::real::{self, Real};
-use crate::train::{BearingMount, OilSupply};
+use crate::train::{BearingMount, OilSupply, Train};
 
 use super::forces::Carried;
 use super::{Extrapolation, Physics};
@@ -38,6 +38,16 @@ pub struct BearingReport {
     pub loss_w: f64,
 }
 
+/// The numbers of a [`BearingReport`]; units as there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BearingState {
+    pub speed: f64,
+    pub radial_load: f64,
+    pub axial_load: f64,
+    pub torque: f64,
+    pub loss: f64,
+}
+
 /// One bearing under load, as its law sees it, with derivatives by a factor on the tooth forces.
 #[expect(clippy::large_enum_variant, reason = "one at a time on the stack; a box would allocate at every point")]
 pub(super) enum Duty<R: Real> {
@@ -47,9 +57,9 @@ pub(super) enum Duty<R: Real> {
 
 impl<R: Real> Duty<R> {
     /// Frictional torque, N m.
-    fn torque(&self) -> Dual<R> {
+    fn torque(&self, turning: Option<&Turning<Dual<R>>>) -> Dual<R> {
         match self {
-            Self::Rolling(law, duty) => law.eval(duty),
+            Self::Rolling(law, duty) => law.eval_turning(duty, turning),
             Self::Plain(law, journal) => law.eval(journal),
         }
     }
@@ -96,8 +106,6 @@ pub(super) struct Friction<R> {
     pub torque: R,
     /// The part of it that grows in proportion to the tooth loads, N m.
     pub proportional: R,
-    /// Radial load of the one that is loaded most, axial load of each, N.
-    pub loads: [f64; 2],
 }
 
 impl<R: Real> Physics<'_, R> {
@@ -144,50 +152,69 @@ impl<R: Real> Physics<'_, R> {
         Duty::Rolling(self.bearing_law(mount), duty)
     }
 
-    /// Friction of the bearings of a mount under what they carry; `told` is the one that is loaded most.
+    /// What of the friction of a bearing of a mount no load changes.
+    pub(super) fn turning(&self, k: usize, speeds: &[R]) -> Option<Turning<Dual<R>>> {
+        let speed = self.slip(speeds, self.train.bearings[k].members);
+        let none = Dual::from_re(R::from(0.0));
+        match self.duty(k, speed, none, none) {
+            Duty::Rolling(law, duty) if speed.re() > 0.0 => law.turning(&duty),
+            _ => None,
+        }
+    }
+
+    /// Axial load on each bearing of a mount.
+    fn thrust(&self, k: usize, carried: &Carried<R>) -> Dual<R> {
+        let count = f64::from(self.train.bearings[k].count);
+        carried.axial / count + Dual::from_re(self.numbers.bearings[k].axial_load / count)
+    }
+
+    /// Radial and axial load of the bearing of a mount that is loaded most.
+    fn hardest(&self, k: usize, carried: &Carried<R>) -> [Dual<R>; 2] {
+        let (mount, numbers) = (&self.train.bearings[k], &self.numbers.bearings[k]);
+        // What the teeth make of the load, of the planet that is loaded most; of a load that is not all theirs to first order.
+        let beyond_mean = self.load_sharing(mount, &carried.loading) - 1.0;
+        let hardest = |load: Dual<R>| load + Dual::from_re(load.eps * beyond_mean);
+        let given = Dual::from_re(numbers.radial_load / f64::from(mount.count));
+        let mut worst = Dual::from_re(R::from(0.0));
+        for own in &carried.radial {
+            let own = hardest(*own + given);
+            if own.re.re() >= worst.re.re() {
+                worst = own;
+            }
+        }
+        [worst, hardest(self.thrust(k, carried))]
+    }
+
+    /// Friction of the bearings of a mount under what they carry.
     pub(super) fn bearing(
         &self,
         k: usize,
         speeds: &[R],
         carried: &Carried<R>,
-        told: &mut dyn FnMut(&Duty<R>),
+        turning: Option<&Turning<Dual<R>>>,
     ) -> Friction<R> {
-        let train = &self.train;
-        let (mount, numbers) = (&train.bearings[k], &self.numbers.bearings[k]);
+        let (mount, numbers) = (&self.train.bearings[k], &self.numbers.bearings[k]);
         let speed = self.slip(speeds, mount.members);
         let none = R::from(0.0);
-        let count = f64::from(mount.count);
         let fixed = Dual::from_re;
-        let Carried { radial: radials, axial, .. } = carried;
-        let axial = *axial / count + fixed(numbers.axial_load / count);
+        let axial = self.thrust(k, carried);
+        let given = fixed(numbers.radial_load / f64::from(mount.count));
         let mut torque = fixed(none);
-        let mut radial = 0.0f64;
-        let mut worst = fixed(none);
-        // What the teeth make of the load, of the planet that is loaded most; of a load that is not all theirs to first order.
-        let beyond_mean = self.load_sharing(mount, &carried.loading) - 1.0;
-        let hardest = |load: Dual<R>| load + fixed(load.eps * beyond_mean);
         // Bearings side by side mostly carry the same. Derivatives are no part of what `==` compares.
         let mut last = None::<(Dual<R>, Dual<R>)>;
         let same = |a: &Dual<R>, b: &Dual<R>| R::NDERIV == 0 && a.re == b.re && a.eps == b.eps;
-        for own in radials {
-            let own = *own + fixed(numbers.radial_load / count);
-            if hardest(own).re.re() >= radial {
-                (radial, worst) = (hardest(own).re.re(), hardest(own));
-            }
-            if speed.re() > 0.0 {
-                let known = last.filter(|(load, _)| same(load, &own));
-                let (_, each) = *last.insert(known.unwrap_or_else(|| (own, self.duty(k, speed, own, axial).torque())));
-                torque += each * (1.0 / radials.len() as f64);
-            }
-        }
-        if speed.re() > 0.0 {
-            told(&self.duty(k, speed, worst, hardest(axial)));
+        for own in carried.radial.iter().filter(|_| speed.re() > 0.0) {
+            let own = *own + given;
+            let known = last.filter(|(load, _)| same(load, &own));
+            let (_, each) =
+                *last.insert(known.unwrap_or_else(|| (own, self.duty(k, speed, own, axial).torque(turning))));
+            torque += each * (1.0 / carried.radial.len() as f64);
         }
         let number = mount.count * mount.places;
         let finite = |x: R| if x.re().is_finite() { x } else { none };
         let all = real::max(finite(torque.re), none) * f64::from(number);
         let proportional = real::clamp(finite(torque.eps) * f64::from(number), none, all);
-        Friction { speed, torque: all, proportional, loads: [radial, hardest(axial).re.re()] }
+        Friction { speed, torque: all, proportional }
     }
 
     /// Load of the planet that is loaded most over the mean, at the bearings of planets; else 1.
@@ -226,32 +253,40 @@ impl<R: Real> Physics<'_, R> {
 }
 
 impl Physics<'_> {
-    /// The bearings of a mount under what they carry, and where their law is used outside its range.
-    pub(super) fn bearing_report(
+    /// The bearings of a mount under what they carry, with this torque of each and this loss of all, and where their law is
+    /// used outside its range.
+    pub(super) fn bearing_state(
         &self,
         k: usize,
         speeds: &[f64],
         carried: &Carried<f64>,
+        [torque, loss]: [f64; 2],
         beyond: &mut Vec<Extrapolation>,
-    ) -> BearingReport {
+    ) -> BearingState {
         let mount = &self.train.bearings[k];
-        let bearings = mount.count * mount.places;
-        let found = self.bearing(k, speeds, carried, &mut |duty| {
-            let (family, law, outside) = duty.outside();
+        let speed = self.slip(speeds, mount.members);
+        let [radial, axial] = self.hardest(k, carried);
+        if speed > 0.0 {
+            let (family, law, outside) = self.duty(k, speed, radial, axial).outside();
             let own = |outside| Extrapolation { family, law, at: mount.name.clone(), outside };
             beyond.extend(outside.into_iter().map(own));
-        });
-        let [radial_load_n, axial_load_n] = found.loads;
+        }
+        BearingState { speed, radial_load: radial.re, axial_load: axial.re, torque, loss }
+    }
+
+    /// The same for people.
+    pub(super) fn bearing_report(&self, train: &Train, k: usize, state: &BearingState) -> BearingReport {
+        let mount = &train.bearings[k];
         BearingReport {
             designation: mount.bearing.designation.clone(),
-            members: mount.members.map(|m| self.train.member_name(m).to_owned()),
-            bearings,
-            speed_rad_s: found.speed,
-            radial_load_n,
-            axial_load_n,
-            torque_n_m: found.torque / f64::from(bearings),
+            members: mount.members.map(|m| train.member_name(m).to_owned()),
+            bearings: mount.count * mount.places,
+            speed_rad_s: state.speed,
+            radial_load_n: state.radial_load,
+            axial_load_n: state.axial_load,
+            torque_n_m: state.torque,
             law: self.bearing_law_name(mount).to_owned(),
-            loss_w: 0.0,
+            loss_w: state.loss,
         }
     }
 }

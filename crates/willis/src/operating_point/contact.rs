@@ -232,17 +232,22 @@ impl<R: Real> Loaded<'_, R> {
         self.at(&self.physics.place(&self.teeth.pair, s))
     }
 
-    fn at(&self, place: &Place<R>) -> Point<R> {
+    /// Load per length of contact line, N/m, and Hertzian pressure, Pa.
+    fn pressed(&self, place: &Place<R>) -> [R; 2] {
         let pair = &self.teeth.pair;
         let share = match self.relief.any() {
             true => self.physics.tooth_share(pair, place.position, self.relief),
             false => place.share,
         };
         let line_load = share * self.normal_force * pair.cos_base_helix() / pair.total_width();
+        let modulus = self.teeth.reduced_modulus();
+        [line_load, root(line_load * modulus / (place.radius * std::f64::consts::TAU))]
+    }
+
+    fn at(&self, place: &Place<R>) -> Point<R> {
+        let [line_load, pressure] = self.pressed(place);
         let radius = place.radius;
         let [sliding, sum] = [place.sliding, place.sum].map(|per_speed| per_speed * self.speed);
-        let modulus = self.teeth.reduced_modulus();
-        let pressure = root(line_load * modulus / (radius * std::f64::consts::TAU));
         let none = R::from(0.0);
         let film = self
             .physics
@@ -584,16 +589,17 @@ impl Physics<'_> {
         Some(Along { stations, loss, local })
     }
 
+    /// The largest Hertzian pressure on the path of contact of a mesh, Pa.
+    pub(super) fn largest_pressure(&self, mesh: &Mesh, teeth: &Teeth, flow: &MeshFlow) -> f64 {
+        let fixed = self.fixed(teeth, flow);
+        let hardest = self.loaded_by(mesh.sharing(), mesh, teeth, flow);
+        let places = fixed.ends.iter().chain([&fixed.pitch]);
+        places.map(|place| hardest.pressed(place)[1]).fold(f64::NAN, f64::max)
+    }
+
     /// The contact of a mesh.
-    pub(super) fn contact(
-        &self,
-        mesh: &Mesh,
-        teeth: &Teeth,
-        flow: &MeshFlow,
-        beyond: &mut Option<Vec<Extrapolation>>,
-    ) -> ContactReport {
+    pub(super) fn contact(&self, mesh: &Mesh, teeth: &Teeth, flow: &MeshFlow) -> ContactReport {
         let pair = &teeth.pair;
-        let laws = &self.train.laws;
         let fixed = self.fixed(teeth, flow);
         let loaded = self.loaded(mesh, teeth, flow);
         let loss_factor = loaded.loss_factor(fixed);
@@ -601,7 +607,6 @@ impl Physics<'_> {
         let pitch = loaded.at(&fixed.pitch);
         let hardest = self.loaded_by(mesh.sharing(), mesh, teeth, flow);
         let hard = hardest.at(&fixed.pitch);
-        let [start, end] = pair.path();
 
         // Extremes: at the ends of each part of the path, just inside.
         let mut worst = Point { film: f64::INFINITY, ..hard };
@@ -615,7 +620,7 @@ impl Physics<'_> {
         let composite = composite(teeth);
         let film_ratio = film.filter(|_| composite > 0.0 && loaded.base_force > 0.0).map(|h| h / composite);
 
-        let report = ContactReport {
+        ContactReport {
             friction: None,
             loss_factor,
             contact_ratio: pair.contact_ratio,
@@ -635,52 +640,64 @@ impl Physics<'_> {
             regime: film_ratio.map(Regime::of),
             sliding_loss_w: 0.0,
             rolling_loss_w: 0.0,
+        }
+    }
+
+    /// Where the laws of a contact are used outside their ranges.
+    pub(super) fn contact_extrapolations(
+        &self,
+        mesh: &Mesh,
+        teeth: &Teeth,
+        flow: &MeshFlow,
+        all: &mut Vec<Extrapolation>,
+    ) {
+        if !mesh.computed {
+            return;
+        }
+        let pair = &teeth.pair;
+        let laws = &self.train.laws;
+        let fixed = self.fixed(teeth, flow);
+        let loaded = self.loaded(mesh, teeth, flow);
+        let mut note = |family, law, outside: Vec<Outside>| {
+            all.extend(outside.into_iter().map(|outside| Extrapolation { family, law, at: mesh.name.clone(), outside }));
         };
-        let note = |beyond: &mut Option<Vec<Extrapolation>>, family, law, outside: Vec<Outside>| {
-            if let Some(all) = beyond {
-                for o in outside {
-                    all.push(Extrapolation { family, law, at: mesh.name.clone(), outside: o });
-                }
+        let factor = laws.loss_factor(&self.friction);
+        note("loss_factor", factor.meta().id, factor.outside(&loaded.path()));
+        let place = ToothLoad {
+            position: pair.position(0.0),
+            contact_ratio: pair.contact_ratio,
+            overlap_ratio: pair.overlap_ratio,
+            relief: loaded.relief,
+        };
+        note("load_sharing", laws.load_sharing.meta().id, laws.load_sharing.outside(&place));
+        if !loaded.works() {
+            return;
+        }
+        let pitch = loaded.at(&fixed.pitch);
+        if let Some((_, oil)) = &self.oil {
+            let contact = loaded.film_contact(oil, pitch.line_load, pitch.radius, pitch.sum);
+            note("film", laws.film.meta().id, laws.film.outside(&contact));
+            let inlet = loaded.inlet(oil, pitch.sliding, pitch.sum, pitch.pressure);
+            note("film_reduction", laws.film_reduction.meta().id, laws.film_reduction.outside(&inlet));
+        }
+        let loss_factor = loaded.loss_factor(fixed);
+        let state = |p: &Point<f64>| self.state(mesh, &loaded, p, loss_factor);
+        let outside = match self.friction.meta().tags.contains(&Tag::Local) {
+            false => self.friction.outside(&state(&pitch)),
+            // Away from the pitch point, where it slides.
+            true => {
+                let [start, end] = pair.path();
+                let mut outside = self.friction.outside(&state(&loaded.point(0.7 * end)));
+                outside.extend(self.friction.outside(&state(&loaded.point(0.7 * start))));
+                outside.dedup_by_key(|o| o.symbol);
+                outside.sort_by_key(|o| o.symbol);
+                outside.dedup_by_key(|o| o.symbol);
+                outside
             }
         };
-        if mesh.computed && beyond.is_some() {
-            let factor = laws.loss_factor(&self.friction);
-            note(beyond, "loss_factor", factor.meta().id, factor.outside(&loaded.path()));
-            let place = ToothLoad {
-                position: pair.position(0.0),
-                contact_ratio: pair.contact_ratio,
-                overlap_ratio: pair.overlap_ratio,
-                relief: loaded.relief,
-            };
-            note(beyond, "load_sharing", laws.load_sharing.meta().id, laws.load_sharing.outside(&place));
-        }
-        if !loaded.works() {
-            return report;
-        }
-        if let (true, Some((_, oil)), true) = (beyond.is_some(), &self.oil, mesh.computed) {
-            let contact = loaded.film_contact(oil, pitch.line_load, pitch.radius, pitch.sum);
-            note(beyond, "film", laws.film.meta().id, laws.film.outside(&contact));
-            let inlet = loaded.inlet(oil, pitch.sliding, pitch.sum, pitch.pressure);
-            note(beyond, "film_reduction", laws.film_reduction.meta().id, laws.film_reduction.outside(&inlet));
-        }
-        if beyond.is_none() || !mesh.computed {
-            return report;
-        }
-        let state = |p: &Point<f64>| self.state(mesh, &loaded, p, loss_factor);
-        let id = self.friction.meta().id;
-        let mut outside = self.friction.outside(&state(&pitch));
-        if self.friction.meta().tags.contains(&Tag::Local) {
-            // Away from the pitch point, where it slides.
-            outside = self.friction.outside(&state(&loaded.point(0.7 * end)));
-            outside.extend(self.friction.outside(&state(&loaded.point(0.7 * start))));
-            outside.dedup_by_key(|o| o.symbol);
-            outside.sort_by_key(|o| o.symbol);
-            outside.dedup_by_key(|o| o.symbol);
-        }
-        note(beyond, "mesh_friction", id, outside);
+        note("mesh_friction", self.friction.meta().id, outside);
         if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
-            note(beyond, "rolling", law.meta().id, law.outside(&loaded.rolling_contact(oil, &pitch)));
+            note("rolling", law.meta().id, law.outside(&loaded.rolling_contact(oil, &pitch)));
         }
-        report
     }
 }

@@ -51,6 +51,8 @@ impl Hold {
     }
 }
 
+/// Most values that are kept.
+const MOST_READ: usize = 4096;
 /// Most trains that are kept.
 const MOST_TRAINS: usize = 64;
 
@@ -72,6 +74,8 @@ pub struct Trains {
     known: HashMap<Settings, Result<Arc<Train>, Diagnostics>>,
     /// How the speeds of a train follow from those that are prescribed, for the last such question.
     transfer: Option<(Tied, Transfer)>,
+    /// Values that were read: an axis says the same ones again and again.
+    read: HashMap<String, (Dimension, Quantity)>,
 }
 
 /// A train, and what of it is held and prescribed.
@@ -93,6 +97,19 @@ impl Tied {
 }
 
 impl Trains {
+    /// A value with a unit.
+    fn quantity(&mut self, text: &str, dimension: Dimension) -> Result<Quantity, Diagnostics> {
+        if let Some((_, known)) = self.read.get(text).filter(|(of, _)| *of == dimension) {
+            return Ok(known.clone());
+        }
+        let read = quantity(text, dimension).map_err(|message| refuse(Code::BadAxis, message, ""))?;
+        if self.read.len() >= MOST_READ {
+            self.read.clear();
+        }
+        self.read.insert(text.to_owned(), (dimension, read.clone()));
+        Ok(read)
+    }
+
     /// Whether a member turns backwards at the prescribed speeds, as far as they say.
     fn turns_backwards(&mut self, train: &Arc<Train>, operation: &Operation, member: MemberId) -> bool {
         if !self.transfer.as_ref().is_some_and(|(tied, _)| tied.is_of(train, operation)) {
@@ -336,7 +353,7 @@ impl<'s> Question<'s> {
                     operation.state = Some(train.find_state(value)?);
                 }
                 Target::Temperature => {
-                    let t = quantity(value, Dimension::TEMPERATURE).map_err(wrong)?;
+                    let t = trains.quantity(value, Dimension::TEMPERATURE)?;
                     operation.temperature = Some(oil_temperature(t.si()).map_err(|d| Diagnostics::from_iter([*d]))?);
                 }
                 _ => {}
@@ -346,7 +363,7 @@ impl<'s> Question<'s> {
         for (target, value) in settings {
             if let Target::Speed(who) = target {
                 let member = self.role(train, &operation, *who)?;
-                speeds.push((member, quantity(value, Dimension::ANGULAR_SPEED).map_err(wrong)?));
+                speeds.push((member, trains.quantity(value, Dimension::ANGULAR_SPEED)?));
             }
         }
         operation.speeds = replaced(train, "speed", &operation.speeds, speeds)?;
@@ -357,7 +374,7 @@ impl<'s> Question<'s> {
                     self.at_ratio(train, &mut operation, &ratio)?;
                 }
                 Target::Store(k) => {
-                    let power = quantity(value, Dimension::POWER).map_err(wrong)?;
+                    let power = trains.quantity(value, Dimension::POWER)?;
                     operation.stores.retain(|(of, _)| of != k);
                     operation.stores.push((*k, Store::Power(power)));
                 }
@@ -367,8 +384,8 @@ impl<'s> Question<'s> {
         let mut loads = vec![];
         for (target, value) in settings {
             let (who, load) = match target {
-                Target::Torque(who) => (who, Load::Torque(quantity(value, Dimension::TORQUE).map_err(wrong)?)),
-                Target::Power(who) => (who, Load::Power(quantity(value, Dimension::POWER).map_err(wrong)?)),
+                Target::Torque(who) => (who, Load::Torque(trains.quantity(value, Dimension::TORQUE)?)),
+                Target::Power(who) => (who, Load::Power(trains.quantity(value, Dimension::POWER)?)),
                 _ => continue,
             };
             let member = self.role(train, &operation, *who)?;

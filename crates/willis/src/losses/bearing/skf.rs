@@ -105,9 +105,14 @@ impl Skf {
 
     /// The parts of the torque; `None` for a bearing without constants.
     pub fn parts<D: Real>(&self, s: &BearingDuty<D>) -> Option<Parts<D>> {
+        Some(self.turning(s)?.parts(s))
+    }
+
+    /// What of it no load changes; `None` for a bearing without constants.
+    pub(super) fn turning<D: Real>(&self, s: &BearingDuty<D>) -> Option<Turning<D>> {
         let k = s.bearing.skf?;
         let drag = if s.speed.re() > 0.0 { self.drag(s, &k) } else { D::from(0.0) };
-        Some(Parts { drag, ..load_and_seals(s, &k, self.starvation, 0.12) })
+        Some(Turning::new(s, k, self.starvation, 0.12, drag))
     }
 
     /// N m
@@ -207,121 +212,175 @@ pub(super) fn rpm<D: Real>(s: &BearingDuty<D>) -> D {
     s.speed * (30.0 / std::f64::consts::PI)
 }
 
-/// Everything but the drag, which is left 0.
-pub(super) fn load_and_seals<D: Real>(
-    s: &BearingDuty<D>,
-    k: &SkfConstants,
-    starvation: Option<f64>,
-    boundary_friction: f64,
-) -> Parts<D> {
-    let Mm { d, big_d, dm, .. } = Mm::of(&s.bearing);
-    let kind = s.bearing.kind;
-    let n = rpm(s);
-    let nu_mm2_s = s.kinematic_viscosity * 1e6;
-    let n_nu = n * nu_mm2_s;
-    let turns = n.re() > 0.0;
+/// What of the torque no load changes, at one speed and viscosity: dear powers, worked out once where loads vary.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turning<D: Real> {
+    constants: SkfConstants,
+    /// Speed, r/min.
+    n: D,
+    /// `(ν n)^0.6`
+    rolling: D,
+    inlet_heating: D,
+    replenishment: D,
+    boundary_share: D,
+    /// `μ_sl`
+    friction: D,
+    /// Constants of `G_rr` and `G_sl` with their powers of `d_m`.
+    scales: [Inner<D>; 4],
+    /// N m
+    seals: D,
+    /// N m
+    drag: D,
+}
 
-    let (g_rr, g_sl) = geometry(s, k, dm, n);
-    let full = match (kind, s.base) {
-        (Kind::CylindricalRoller | Kind::FullComplementCylindricalRoller | Kind::AxialCylindricalRoller, _) => 0.02,
-        (Kind::TaperedRoller, _) => 0.002,
-        (_, Base::Mineral) => 0.05,
-        (_, Base::Traction) => 0.1,
-        _ => 0.04,
-    };
-    let [mu_bl, mu_ehl] = s.sliding_friction.unwrap_or([boundary_friction, full]);
-    let low = s.bearing.element_diameter.re() * 0.5 * (1.0 + 1e-9);
-    let k_rs = starvation.unwrap_or(match s.supply {
-        Supply::Bath { level } if level.re() > low => 0.0,
-        Supply::Bath { .. } | Supply::Jet => 3e-8,
-        Supply::Mist | Supply::Grease => 6e-8,
-    });
-    let one = D::from(1.0);
-    let fixed = |c: Inner<D>| D::constant(c);
-    let (phi_ish, phi_rs, phi_bl, mu_sl) = if turns {
-        let phi_bl = (-n_nu.powf(1.4) * fixed(dm * 2.6e-8)).exp();
-        (
-            ((n * fixed(dm)).powf(1.28) * nu_mm2_s.powf(0.64) * 1.84e-9 + 1.0).recip(),
-            (-n_nu * fixed((d + big_d) * k_rs * (Inner::<D>::from(k.k_z) / ((big_d - d) * 2.0)).sqrt())).exp(),
-            phi_bl,
-            phi_bl * (mu_bl - mu_ehl) + mu_ehl,
-        )
-    } else {
-        (one, one, one, D::from(mu_bl.max(0.15)))
-    };
-    Parts {
-        rolling: g_rr * pow(n_nu, 0.6) * 1e-3,
-        inlet_heating: phi_ish,
-        replenishment: phi_rs,
-        boundary_share: phi_bl,
-        sliding: g_sl * mu_sl * 1e-3,
-        seals: s.bearing.seal.map_or(D::from(0.0), |seal| fixed(seal_torque(&seal, s.bearing.kind, d, big_d) * 1e-3)),
-        drag: D::from(0.0),
+impl<D: Real> Turning<D> {
+    /// With this drag of the oil.
+    pub(super) fn new(
+        s: &BearingDuty<D>,
+        k: SkfConstants,
+        starvation: Option<f64>,
+        boundary_friction: f64,
+        drag: D,
+    ) -> Self {
+        let Mm { d, big_d, dm, .. } = Mm::of(&s.bearing);
+        let kind = s.bearing.kind;
+        let n = rpm(s);
+        let nu_mm2_s = s.kinematic_viscosity * 1e6;
+        let n_nu = n * nu_mm2_s;
+        let turns = n.re() > 0.0;
+
+        let full = match (kind, s.base) {
+            (Kind::CylindricalRoller | Kind::FullComplementCylindricalRoller | Kind::AxialCylindricalRoller, _) => 0.02,
+            (Kind::TaperedRoller, _) => 0.002,
+            (_, Base::Mineral) => 0.05,
+            (_, Base::Traction) => 0.1,
+            _ => 0.04,
+        };
+        let [mu_bl, mu_ehl] = s.sliding_friction.unwrap_or([boundary_friction, full]);
+        let low = s.bearing.element_diameter.re() * 0.5 * (1.0 + 1e-9);
+        let k_rs = starvation.unwrap_or(match s.supply {
+            Supply::Bath { level } if level.re() > low => 0.0,
+            Supply::Bath { .. } | Supply::Jet => 3e-8,
+            Supply::Mist | Supply::Grease => 6e-8,
+        });
+        let one = D::from(1.0);
+        let fixed = |c: Inner<D>| D::constant(c);
+        let (phi_ish, phi_rs, phi_bl, mu_sl) = if turns {
+            let phi_bl = (-n_nu.powf(1.4) * fixed(dm * 2.6e-8)).exp();
+            (
+                ((n * fixed(dm)).powf(1.28) * nu_mm2_s.powf(0.64) * 1.84e-9 + 1.0).recip(),
+                (-n_nu * fixed((d + big_d) * k_rs * (Inner::<D>::from(k.k_z) / ((big_d - d) * 2.0)).sqrt())).exp(),
+                phi_bl,
+                phi_bl * (mu_bl - mu_ehl) + mu_ehl,
+            )
+        } else {
+            (one, one, one, D::from(mu_bl.max(0.15)))
+        };
+        let seals = s.bearing.seal.map_or(D::from(0.0), |seal| fixed(seal_torque(&seal, kind, d, big_d) * 1e-3));
+        Self {
+            constants: k,
+            n,
+            rolling: pow(n_nu, 0.6),
+            inlet_heating: phi_ish,
+            replenishment: phi_rs,
+            boundary_share: phi_bl,
+            friction: mu_sl,
+            scales: scales(kind, &k, dm),
+            seals,
+            drag,
+        }
+    }
+
+    /// The parts under the load of a duty of this speed and viscosity.
+    pub(super) fn parts(&self, s: &BearingDuty<D>) -> Parts<D> {
+        let (g_rr, g_sl) = self.geometry(s);
+        Parts {
+            rolling: g_rr * self.rolling * 1e-3,
+            inlet_heating: self.inlet_heating,
+            replenishment: self.replenishment,
+            boundary_share: self.boundary_share,
+            sliding: g_sl * self.friction * 1e-3,
+            seals: self.seals,
+            drag: self.drag,
+        }
+    }
+
+    /// `G_rr` and `G_sl`, in the units of the source.
+    fn geometry(&self, s: &BearingDuty<D>) -> (D, D) {
+        let [_, r2, r3, r4] = self.constants.rolling;
+        let [_, s2, s3, s4] = self.constants.sliding;
+        let [first, second, third, fourth] = self.scales.map(D::constant);
+        let (fr, fa) = (real::abs(s.radial_load), real::abs(s.axial_load));
+        let fixed = |c: Inner<D>| D::constant(c);
+        let y = s.bearing.axial_factor.unwrap_or(Inner::<D>::from(1.5));
+        let cube = 1.0 / 3.0;
+        match s.bearing.kind {
+            Kind::DeepGrooveBall if fa.re() > 0.0 => {
+                let sine = match s.bearing.static_rating {
+                    Some(c0) => (fa.over(c0).powf(0.24) * 24.6f64.to_radians()).sin(),
+                    None => D::from(15f64.to_radians().sin()),
+                };
+                // beyond 90° the formula means nothing: the contact cannot be steeper
+                let sine = if sine.re() > 0.0 { sine } else { D::from(1.0) };
+                (pow(fr + fa / sine * r2, 0.54) * first, pow(fr.powi(5) + fa.powi(4) / sine * fourth, cube) * third)
+            }
+            Kind::DeepGrooveBall => (pow(fr, 0.54) * first, pow(fr, 5.0 * cube) * second),
+            Kind::AngularContactBall
+            | Kind::DoubleRowAngularContactBall
+            | Kind::FourPointContactBall
+            | Kind::SelfAligningBall => {
+                let whirl = self.n * self.n * third;
+                (
+                    pow(fr + whirl * r3 + fa * r2, 0.54) * first,
+                    (pow(fr + whirl * s3, 4.0 * cube) + pow(fa, 4.0 * cube) * s2) * second,
+                )
+            }
+            Kind::TaperedRoller => {
+                (pow(fr + fa * fixed(y * r2), 0.31) * first, (fr + fa * fixed(y * s2)) * second)
+            }
+            Kind::SphericalRoller => (
+                real::min(pow(fr + fa * r2, 0.54) * first, pow(fr + fa * r4, 0.31) * third),
+                real::min(
+                    pow(fr.powi(4) + fa.powi(4) * s2, cube) * second,
+                    pow(fr.powi(3) + fa.powi(3) * s4, cube) * fourth,
+                ),
+            ),
+            Kind::ToroidalRoller => (
+                real::min(pow(fr, 0.54) * first, pow(fr, 0.31) * third),
+                real::min(pow(fr, 5.0 * cube) * second, fr * fourth),
+            ),
+            // It has no constants of this model, and never comes here.
+            Kind::Plain => (D::from(0.0), D::from(0.0)),
+            Kind::AxialBall => (pow(fa, 0.54) * first, pow(fa, 4.0 * cube) * second),
+            Kind::AxialCylindricalRoller => (pow(fa, 0.31) * first, fa * second),
+            Kind::CylindricalRoller | Kind::FullComplementCylindricalRoller | Kind::NeedleRoller => {
+                (pow(fr, 0.31) * first, fa * second + fr * fourth)
+            }
+        }
     }
 }
 
-/// `G_rr` and `G_sl`, in the units of the source.
-fn geometry<D: Real>(s: &BearingDuty<D>, k: &SkfConstants, dm: Inner<D>, n: D) -> (D, D) {
-    let [r1, r2, r3, r4] = k.rolling;
-    let [s1, s2, s3, s4] = k.sliding;
-    let (fr, fa) = (real::abs(s.radial_load), real::abs(s.axial_load));
-    let fixed = |c: Inner<D>| D::constant(c);
-    let y = s.bearing.axial_factor.unwrap_or(Inner::<D>::from(1.5));
-    let third = 1.0 / 3.0;
-    match s.bearing.kind {
-        Kind::DeepGrooveBall if fa.re() > 0.0 => {
-            let sine = match s.bearing.static_rating {
-                Some(c0) => (fa.over(c0).powf(0.24) * 24.6f64.to_radians()).sin(),
-                None => D::from(15f64.to_radians().sin()),
-            };
-            // beyond 90° the formula means nothing: the contact cannot be steeper
-            let sine = if sine.re() > 0.0 { sine } else { D::from(1.0) };
-            (
-                pow(fr + fa / sine * r2, 0.54) * fixed(dm.powf(1.96) * r1),
-                pow(fr.powi(5) + fa.powi(4) / sine * fixed(dm.powf(1.5) * s2), third) * fixed(dm.powf(-0.145) * s1),
-            )
-        }
+/// What stands before the loads in `G_rr` and `G_sl`: two of the first and two of the second kind of each, by type.
+fn scales<C: Real>(kind: Kind, k: &SkfConstants, dm: C) -> [C; 4] {
+    let [r1, r2, r3, _] = k.rolling;
+    let [s1, s2, s3, _] = k.sliding;
+    let none = C::from(0.0);
+    match kind {
         Kind::DeepGrooveBall => {
-            (pow(fr, 0.54) * fixed(dm.powf(1.96) * r1), pow(fr, 5.0 * third) * fixed(dm.powf(-0.26) * s1))
+            [dm.powf(1.96) * r1, dm.powf(-0.26) * s1, dm.powf(-0.145) * s1, dm.powf(1.5) * s2]
         }
         Kind::AngularContactBall | Kind::DoubleRowAngularContactBall | Kind::FourPointContactBall => {
-            let whirl = n * n * fixed(dm.powi(4));
-            (
-                pow(fr + whirl * r3 + fa * r2, 0.54) * fixed(dm.powf(1.97) * r1),
-                (pow(fr + whirl * s3, 4.0 * third) + pow(fa, 4.0 * third) * s2) * fixed(dm.powf(0.26) * s1),
-            )
+            [dm.powf(1.97) * r1, dm.powf(0.26) * s1, dm.powi(4), none]
         }
-        Kind::SelfAligningBall => {
-            let whirl = n * n * fixed(dm.powf(3.5));
-            (
-                pow(fr + whirl * r3 + fa * r2, 0.54) * fixed(dm.powi(2) * r1),
-                (pow(fr + whirl * s3, 4.0 * third) + pow(fa, 4.0 * third) * s2) * fixed(dm.powf(-0.12) * s1),
-            )
-        }
-        Kind::TaperedRoller => (
-            pow(fr + fa * fixed(y * r2), 0.31) * fixed(dm.powf(2.38) * r1),
-            (fr + fa * fixed(y * s2)) * fixed(dm.powf(0.82) * s1),
-        ),
-        Kind::SphericalRoller => (
-            real::min(
-                pow(fr + fa * r2, 0.54) * fixed(dm.powf(1.85) * r1),
-                pow(fr + fa * r4, 0.31) * fixed(dm.powf(2.3) * r3),
-            ),
-            real::min(
-                pow(fr.powi(4) + fa.powi(4) * s2, third) * fixed(dm.powf(0.25) * s1),
-                pow(fr.powi(3) + fa.powi(3) * s4, third) * fixed(dm.powf(0.94) * s3),
-            ),
-        ),
-        Kind::ToroidalRoller => (
-            real::min(pow(fr, 0.54) * fixed(dm.powf(1.97) * r1), pow(fr, 0.31) * fixed(dm.powf(2.37) * r2)),
-            real::min(pow(fr, 5.0 * third) * fixed(dm.powf(-0.19) * s1), fr * fixed(dm.powf(1.05) * s2)),
-        ),
-        // It has no constants of this model, and never comes here.
-        Kind::Plain => (D::from(0.0), D::from(0.0)),
-        Kind::AxialBall => (pow(fa, 0.54) * fixed(dm.powf(1.83) * r1), pow(fa, 4.0 * third) * fixed(dm.powf(0.05) * s1)),
-        Kind::AxialCylindricalRoller => (pow(fa, 0.31) * fixed(dm.powf(2.38) * r1), fa * fixed(dm.powf(0.62) * s1)),
+        Kind::SelfAligningBall => [dm.powi(2) * r1, dm.powf(-0.12) * s1, dm.powf(3.5), none],
+        Kind::TaperedRoller => [dm.powf(2.38) * r1, dm.powf(0.82) * s1, none, none],
+        Kind::SphericalRoller => [dm.powf(1.85) * r1, dm.powf(0.25) * s1, dm.powf(2.3) * r3, dm.powf(0.94) * s3],
+        Kind::ToroidalRoller => [dm.powf(1.97) * r1, dm.powf(-0.19) * s1, dm.powf(2.37) * r2, dm.powf(1.05) * s2],
+        Kind::Plain => [none; 4],
+        Kind::AxialBall => [dm.powf(1.83) * r1, dm.powf(0.05) * s1, none, none],
+        Kind::AxialCylindricalRoller => [dm.powf(2.38) * r1, dm.powf(0.62) * s1, none, none],
         Kind::CylindricalRoller | Kind::FullComplementCylindricalRoller | Kind::NeedleRoller => {
-            (pow(fr, 0.31) * fixed(dm.powf(2.41) * r1), fa * fixed(dm.powf(0.9) * s1) + fr * fixed(dm * s2))
+            [dm.powf(2.41) * r1, dm.powf(0.9) * s1, none, dm * s2]
         }
     }
 }

@@ -1,6 +1,6 @@
 use num_dual::DualNum;
 
-use super::skf::{Mm, interpolate, load_and_seals, rpm};
+use super::skf::{Mm, Turning, interpolate, rpm};
 use super::{BearingDuty, Law, Parts, Supply};
 use crate::losses::{Meta, Tag, Trust};
 use crate::real::{Inner, Real, min};
@@ -62,6 +62,11 @@ impl Skf6000 {
 
     /// The parts of the torque; `None` for a bearing without constants.
     pub fn parts<D: Real>(&self, s: &BearingDuty<D>) -> Option<Parts<D>> {
+        Some(self.turning(s)?.parts(s))
+    }
+
+    /// What of it no load changes; `None` for a bearing without constants.
+    pub(super) fn turning<D: Real>(&self, s: &BearingDuty<D>) -> Option<Turning<D>> {
         let k = s.bearing.skf?;
         let Mm { d, big_d, b, dm } = Mm::of(&s.bearing);
         let (level, jets) = match s.supply {
@@ -79,7 +84,8 @@ impl Skf6000 {
             ratio * (10.0 * k.k_l) * b * dm.powi(4)
         };
         let n = rpm(s);
-        Some(Parts { drag: n * n * D::constant(v_m * factor * jets * 1e-3), ..load_and_seals(s, &k, self.starvation, 0.15) })
+        let drag = n * n * D::constant(v_m * factor * jets * 1e-3);
+        Some(Turning::new(s, k, self.starvation, 0.15, drag))
     }
 }
 
