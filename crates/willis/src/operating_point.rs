@@ -33,6 +33,7 @@ use std::sync::OnceLock;
 
 use num_dual::Dual;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Coupling, Motion};
@@ -362,6 +363,12 @@ pub(crate) struct Physics<'t, R: Real = f64> {
     least_speed: f64,
 }
 
+/// All losses of a flow, W.
+fn computed_loss(flow: &Flow) -> f64 {
+    let passing = flow.variators.iter().map(|v| v.loss);
+    flow.meshes.iter().map(|m| m.loss).chain(passing).chain(flow.drag_losses.iter().copied()).sum()
+}
+
 /// What laws say of a solved step beside its losses: what a reader must be warned of follows from it.
 pub(crate) struct Strains {
     /// The largest Hertzian pressure in each mesh with teeth, Pa.
@@ -379,14 +386,14 @@ pub(crate) struct Strains {
 struct MeshLoss<R = f64> {
     sliding: R,
     /// Bearing, and its part.
-    bearings: Vec<(usize, R)>,
+    bearings: SmallVec<[(usize, R); 2]>,
     /// Mean coefficient of friction of the teeth.
     friction: Option<R>,
 }
 
 impl<R: Real> MeshLoss<R> {
     fn none() -> Self {
-        Self { sliding: R::from(0.0), bearings: vec![], friction: None }
+        Self { sliding: R::from(0.0), bearings: SmallVec::new(), friction: None }
     }
 
     fn total(&self) -> R {
@@ -455,7 +462,7 @@ impl<R: Real> Step<R> {
     }
 
     /// The efficiency in force in each mesh, first gear driving and second gear driving.
-    pub fn efficiencies(&self, train: &Train, given: &[[R; 2]]) -> Vec<[R; 2]> {
+    pub fn efficiencies(&self, train: &Train, given: &[[R; 2]]) -> SmallVec<[[R; 2]; 8]> {
         let all = self.meshes.iter().zip(&train.meshes).zip(given);
         all.map(|((own, mesh), given)| {
             let given = if mesh.computed { [R::from(1.0); 2] } else { *given };
@@ -622,12 +629,13 @@ impl<'t, R: Real> Physics<'t, R> {
         known: &dyn Fn(MemberId) -> bool,
         without_load: &Idle<R>,
     ) -> Step<R> {
-        let mut step = Step::blank(&self.train);
+        let most = 2 * meshes.len() + self.train.bearings.len() + without_load.drags.len();
+        let (mut sources, mut drags) = (Vec::with_capacity(most), Vec::with_capacity(most));
         let none = R::from(0.0);
         let mut drag = |source: Source, members: [MemberId; 2], torque: R| {
             if let Some(drag) = self.drag_between(speeds, known, members, torque) {
-                step.sources.push(source);
-                step.drags.push(drag);
+                sources.push(source);
+                drags.push(drag);
             }
         };
         let mut losses: Vec<MeshLoss<R>> = Vec::with_capacity(meshes.len());
@@ -654,7 +662,7 @@ impl<'t, R: Real> Physics<'t, R> {
                 (_, true, _) => -self.numbers.efficiencies[m.mesh.0][0] + 1.0,
                 _ => none,
             };
-            losses.push(MeshLoss { sliding, bearings: vec![], friction: tooth.friction });
+            losses.push(MeshLoss { sliding, bearings: SmallVec::new(), friction: tooth.friction });
         }
         let mut bearings = Vec::with_capacity(self.train.bearings.len());
         let reactions = self.oil.as_ref().map(|_| self.reactions(speeds, meshes));
@@ -686,11 +694,9 @@ impl<'t, R: Real> Physics<'t, R> {
             }
             drag(Source::Bearing(k), mount.members, torque);
         }
-        step.sources.extend(without_load.drags.iter().map(|d| d.0));
-        step.drags.extend(without_load.drags.iter().map(|d| d.1));
-        step.meshes = losses;
-        step.bearings = bearings;
-        step
+        sources.extend(without_load.drags.iter().map(|d| d.0));
+        drags.extend(without_load.drags.iter().map(|d| d.1));
+        Step { meshes: losses, sources, drags, bearings, machines: vec![] }
     }
 
     /// Every loss of a solved step: what loses it, what kind it is, its law, the power in W; what has one name, kind
@@ -806,6 +812,12 @@ impl Physics<'_> {
             change += sides.map_or(0.0, |sides| sides[at[1]].power.abs()) * (eta - before).abs() / eta;
         }
         let relative = |d: &Drag| flow.speeds[d.members[0].0] - flow.speeds[d.members[1].0];
+        let aligned = |(a, b): (&Drag, &Drag)| a.members == b.members;
+        if old.sources == new.sources && old.drags.iter().zip(&new.drags).all(aligned) {
+            let both = old.drags.iter().zip(&new.drags);
+            both.for_each(|(d, theirs)| change += ((d.torque - theirs.torque) * relative(d)).abs());
+            return (change, computed_loss(flow));
+        }
         let mut theirs = new.drags.iter().zip(&new.sources).map(|(d, s)| (d, s, false)).collect::<Vec<_>>();
         for (d, s) in old.drags.iter().zip(&old.sources) {
             let same = theirs.iter_mut().find(|t| !t.2 && t.1 == s && t.0.members == d.members);
@@ -816,10 +828,7 @@ impl Physics<'_> {
             change += ((d.torque - torque) * relative(d)).abs();
         }
         change += theirs.iter().filter(|t| !t.2).map(|t| (t.0.torque * relative(t.0)).abs()).sum::<f64>();
-        let passing = flow.variators.iter().map(|v| v.loss);
-        let computed: f64 =
-            flow.meshes.iter().map(|m| m.loss).chain(passing).chain(flow.drag_losses.iter().copied()).sum();
-        (change, computed)
+        (change, computed_loss(flow))
     }
 
     /// Repeats statics and laws until they agree. `solve` gives the flow for the losses of a step, or nothing where friction

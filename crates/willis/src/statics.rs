@@ -24,6 +24,7 @@ mod enumeration;
 mod problem;
 
 use std::collections::HashSet;
+use std::sync::OnceLock;
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -742,6 +743,9 @@ struct Trial {
     exact: Option<Vec<Rational>>,
 }
 
+/// By this part the bounds on ρ of neighbouring points may differ from those of the first.
+const MORE: f64 = 0.02;
+
 /// Rounding of exact numbers to floating point.
 fn rounding(rounded: &[f64]) -> Vec<f64> {
     rounded.iter().map(|x| f64::EPSILON * x.abs()).collect()
@@ -778,9 +782,36 @@ impl Equilibrium {
         self.regular(&centre, &radius)
     }
 
+    /// The same where a larger box may be known to be so: the first that is found is kept for the next question.
+    fn regular_within(&self, bounds: &[[f64; 2]], known: &OnceLock<Vec<[f64; 2]>>) -> bool {
+        let inside =
+            |wide: &Vec<[f64; 2]>| bounds.iter().zip(wide).all(|(own, wide)| wide[0] <= own[0] && own[1] <= wide[1]);
+        match known.get() {
+            Some(wide) if inside(wide) => true,
+            Some(_) => self.regular_between(bounds),
+            None => {
+                let wide: Vec<[f64; 2]> =
+                    bounds.iter().map(|[low, high]| [low * (1.0 - MORE), high * (1.0 + MORE)]).collect();
+                if self.regular_between(&wide) {
+                    // Another thread may have been first; either is one.
+                    let _ = known.set(wide);
+                    return true;
+                }
+                self.regular_between(bounds)
+            }
+        }
+    }
+
     /// Whether rounding leaves no doubt that, with ρ between these bounds (first end driving, second end driving, by column)
     /// and these torques by row, one solution exists for every load, and that in that of this load the ends of `columns` drive.
-    pub(crate) fn is_only(&self, columns: &[SolvedColumn], rho: &[[f64; 2]], torques: &[f64]) -> bool {
+    /// `regular` keeps what was proved of other bounds.
+    pub(crate) fn is_only(
+        &self,
+        columns: &[SolvedColumn],
+        rho: &[[f64; 2]],
+        torques: &[f64],
+        regular: &OnceLock<Vec<[f64; 2]>>,
+    ) -> bool {
         let bounds: Vec<[f64; 2]> = rho.iter().map(|[p, q]| [p.min(*q), p.max(*q)]).collect();
         let own = |j: usize| rho[j][usize::from(columns[j].p_drives == Some(false))];
         let forces = || certain(&self.float_matrix(&own), &self.sizes(&own), &DVector::from_column_slice(torques));
@@ -790,7 +821,7 @@ impl Equilibrium {
                 rho[j][0] == rho[j][1] || columns[j].p_drives == Some(drives > 0.0)
             })
         };
-        self.regular_between(&bounds) && forces().is_some_and(|(forces, _)| as_taken(&forces))
+        self.regular_within(&bounds, regular) && forces().is_some_and(|(forces, _)| as_taken(&forces))
     }
 
     pub(crate) fn system(&self) -> System {

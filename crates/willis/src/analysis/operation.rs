@@ -1,5 +1,7 @@
 //! One operating point, from what is prescribed to the answer: speeds, loads, equilibria, verdict.
 
+use std::sync::OnceLock;
+
 use crate::kinematics::{Configuration, Coupled, Motion};
 use crate::operating_point::{Physics, Step};
 use crate::power_flow::Known;
@@ -46,6 +48,8 @@ pub(super) struct Pattern {
     sigma: Vec<Option<i8>>,
     /// Nodes whose torque is left to be found.
     open: Vec<usize>,
+    /// Bounds on ρ by column between which there is one solution for every load, once some are known.
+    regular: OnceLock<Vec<[f64; 2]>>,
 }
 
 impl Pattern {
@@ -82,7 +86,7 @@ impl Pattern {
 
     /// Whether an agreement of its [rounds](Self::rounds) is beyond doubt the only equilibrium.
     pub fn is_only(&self, rounds: &Rounds<'_>, agreed: &Agreed) -> bool {
-        rounds.is_only(&self.equilibrium, agreed)
+        rounds.is_only(&self.equilibrium, agreed, &self.regular)
     }
 }
 
@@ -245,7 +249,7 @@ pub(super) fn settle_at<'t>(
     let solved = solved.map(|Branch { equilibrium, solution, .. }| (equilibrium.solved(&solution), equilibrium));
     let origin = solved.map(|((rows, columns), equilibrium)| {
         let open = problem.open.clone();
-        Origin { pattern: Pattern { equilibrium, rows, columns, sigma, open }, problem }
+        Origin { pattern: Pattern { equilibrium, rows, columns, sigma, open, regular: OnceLock::new() }, problem }
     });
     Ok(Settled { report, point, origin, findings })
 }

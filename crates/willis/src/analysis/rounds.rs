@@ -1,5 +1,7 @@
 //! Laws and statics in floating point, where it is known which ends drive.
 
+use std::sync::OnceLock;
+
 use crate::kinematics::{Configuration, Motion, Node};
 use crate::operating_point::{Approach, Convergence, Idle, Physics, Step};
 use crate::power_flow::{Drag, External, Flow, Known, rho};
@@ -52,9 +54,9 @@ impl<'a> Rounds<'a> {
         let (c, known) = (self.c(), self.known);
         let efficiencies = step.efficiencies(c.train, &self.given);
         let dragged = step.drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]);
-        let dragged: Vec<(Node, f64)> = dragged.map(|(member, torque)| (c.node(member), torque)).collect();
+        let dragged = dragged.map(|(member, torque)| (c.node(member), torque));
         let is_open = |node: Node| node.is_none_or(|n| self.problem.open.contains(&n));
-        if !dragged.iter().all(|(node, _)| is_open(*node) || known.row(*node).is_some()) {
+        if !dragged.clone().all(|(node, _)| is_open(node) || known.row(node).is_some()) {
             return None;
         }
         let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, f64)| {
@@ -155,8 +157,8 @@ impl<'a> Rounds<'a> {
     }
 
     /// Whether this agreement is the only one, beyond the doubts of rounding, and drives its load in spite of the drags.
-    /// `equilibrium` is the problem of `known`, with whatever losses.
-    pub fn is_only(&self, equilibrium: &Equilibrium, agreed: &Agreed) -> bool {
+    /// `equilibrium` is the problem of `known`, with whatever losses; `regular` keeps what was proved at other points.
+    pub fn is_only(&self, equilibrium: &Equilibrium, agreed: &Agreed, regular: &OnceLock<Vec<[f64; 2]>>) -> bool {
         let c = self.c();
         let Agreed { step, acting, .. } = agreed;
         let efficiencies = step.efficiencies(c.train, &self.given);
@@ -175,7 +177,7 @@ impl<'a> Rounds<'a> {
             || self.problem.are_none()
             // Drag may eat a small load up; only tooth friction locks.
             || self.drives_without_drags(step);
-        drives && equilibrium.is_only(self.known.columns, &rho, &torques)
+        drives && equilibrium.is_only(self.known.columns, &rho, &torques, regular)
     }
 
     /// Whether a load is driven, beyond doubt, if nothing but the losses of the meshes resists.

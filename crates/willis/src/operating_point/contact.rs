@@ -659,7 +659,12 @@ impl Physics<'_> {
         let fixed = self.fixed(teeth, flow);
         let loaded = self.loaded(mesh, teeth, flow);
         let mut note = |family, law, outside: Vec<Outside>| {
-            all.extend(outside.into_iter().map(|outside| Extrapolation { family, law, at: mesh.name.clone(), outside }));
+            all.extend(outside.into_iter().map(|outside| Extrapolation {
+                family,
+                law,
+                at: mesh.name.clone(),
+                outside,
+            }));
         };
         let factor = laws.loss_factor(&self.friction);
         note("loss_factor", factor.meta().id, factor.outside(&loaded.path()));

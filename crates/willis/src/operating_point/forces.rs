@@ -13,6 +13,7 @@
 
 use num_dual::{Dual, DualNum};
 use serde::{Deserialize, Serialize};
+use smallvec::{SmallVec, smallvec};
 
 use crate::power_flow::MeshFlow;
 use crate::real::{self, Real};
@@ -185,11 +186,11 @@ struct System<R> {
 /// What the bearings of one place carry of the tooth forces and of the rest.
 pub(super) struct Carried<R> {
     /// Radial load of each bearing, with its derivative by a factor on all tooth forces.
-    pub radial: Vec<Dual<R>>,
+    pub radial: SmallVec<[Dual<R>; 2]>,
     /// Axial load on all of them, in the same form.
     pub axial: Dual<R>,
     /// The meshes that make the load, with the sizes of their forces.
-    pub loading: Vec<(usize, R)>,
+    pub loading: SmallVec<[(usize, R); 4]>,
 }
 
 /// What all bearings carry.
@@ -569,7 +570,7 @@ impl<R: Real> Physics<'_, R> {
         }
         let planets = forces.seats.len();
         // The mirror image of a family counts where it loads the planets more.
-        let mut flipped = vec![false; forces.groups];
+        let mut flipped: SmallVec<[bool; 8]> = smallvec![false; forces.groups];
         if !forces.mirrored.is_empty() {
             let load = |side: f64| {
                 let mut all = vec![Wrench::none(); planets];
@@ -596,9 +597,15 @@ impl<R: Real> Physics<'_, R> {
         let side = |group: usize| if flipped[group] { -1.0 } else { 1.0 };
 
         let none = R::from(0.0);
-        let mut on_planets = vec![PlanetLoad::none(); planets];
+        let fixed = |x: R| Dual::from_re(x);
+        let mut on_planets: SmallVec<[PlanetLoad<R>; 2]> = smallvec![PlanetLoad::none(); planets];
         let mut on_shafts = ShaftLoads::none(forces);
-        let mut loading: Vec<Vec<(usize, R)>> = vec![Vec::new(); forces.places.len()];
+        let unloaded = |place: &Place<R>| Carried {
+            radial: place.positions().map(|_| fixed(none)).collect(),
+            axial: fixed(none),
+            loading: SmallVec::new(),
+        };
+        let mut places: Vec<Carried<R>> = forces.places.iter().map(unloaded).collect();
         for (j, m) in meshes.iter().enumerate() {
             let Some(group) = forces.touches[m.mesh.0].map(|t| t.group) else { continue };
             let Some((touch, pressed)) = self.pressed(m, side(group)) else { continue };
@@ -625,14 +632,14 @@ impl<R: Real> Physics<'_, R> {
                 }
             }
             let thrusts = pressed.thrust.iter().any(|t| t.re() != 0.0);
-            for (place, list) in forces.places.iter().zip(&mut loading) {
+            for (place, own) in forces.places.iter().zip(&mut places) {
                 let here = touch.bodies.iter().any(|b| match (place.on, *b) {
                     (On::Planet(p), Body::Planet(q)) => p == q,
                     (On::Shafts(both), Body::Shaft(s)) => both.contains(&Some(s)) && (touch.single || thrusts),
                     _ => false,
                 });
                 if here {
-                    list.push((j, pressed.size));
+                    own.loading.push((j, pressed.size));
                 }
             }
         }
@@ -652,15 +659,7 @@ impl<R: Real> Physics<'_, R> {
             }
         }
 
-        let fixed = |x: R| Dual::from_re(x);
         let scale = |x: R| Dual::new(x, x);
-        let mut places: Vec<Carried<R>> = (loading.into_iter().zip(&forces.places))
-            .map(|(loading, place)| Carried {
-                radial: vec![fixed(none); place.positions().count()],
-                axial: fixed(none),
-                loading,
-            })
-            .collect();
         // Size of a force that has a part in proportion to the tooth forces.
         let size = |teeth: Plane<R>, rest: Plane<R>| {
             let [x, y] = [0, 1].map(|k| scale(teeth[k]) + fixed(rest[k]));
@@ -679,7 +678,7 @@ impl<R: Real> Physics<'_, R> {
                 }
             }
         }
-        let mut shafts = Vec::new();
+        let mut shafts = Vec::with_capacity(forces.shafts.len());
         for system in &forces.systems {
             self.share(system, &on_shafts, &size, &mut places, &mut shafts);
         }
@@ -699,7 +698,7 @@ impl<R: Real> Physics<'_, R> {
         let none = R::from(0.0);
         let n = system.shafts.len();
         let at = |s: Option<usize>| s.and_then(|s| system.shafts.iter().position(|o| *o == s));
-        let mut sums = vec![
+        let mut sums: SmallVec<[ShaftLoad; 4]> = smallvec![
             ShaftLoad {
                 radial_n: 0.0,
                 thrust_n: 0.0,
@@ -714,7 +713,7 @@ impl<R: Real> Physics<'_, R> {
             // Teeth and rest, in both directions of the plane.
             let solved = [&group.teeth, &group.rest].map(|wrenches| {
                 [0, 1].map(|k| {
-                    let loads: Vec<R> =
+                    let loads: SmallVec<[R; 8]> =
                         (system.shafts.iter()).flat_map(|s| [wrenches[*s].force[k], wrenches[*s].tilt[k]]).collect();
                     let moved = system.radial.solve(&loads);
                     (loads, moved)
@@ -755,7 +754,7 @@ impl<R: Real> Physics<'_, R> {
                 }
             }
         }
-        let thrusts: Vec<R> = system.shafts.iter().map(|s| loads.thrust[*s]).collect();
+        let thrusts: SmallVec<[R; 8]> = system.shafts.iter().map(|s| loads.thrust[*s]).collect();
         let moved = system.axial.solve(&thrusts);
         for (i, sum) in sums.iter_mut().enumerate() {
             sum.thrust_n = thrusts[i].re();
@@ -841,27 +840,27 @@ impl<R: Real> PlanetLoad<R> {
 /// Loads on all shafts whose directions are known relative to each other.
 struct Group<R> {
     number: usize,
-    touched: Vec<bool>,
-    teeth: Vec<Wrench<R>>,
-    rest: Vec<Wrench<R>>,
+    touched: SmallVec<[bool; 8]>,
+    teeth: SmallVec<[Wrench<R>; 4]>,
+    rest: SmallVec<[Wrench<R>; 4]>,
 }
 
 /// Loads on all shafts.
 struct ShaftLoads<R> {
-    groups: Vec<Group<R>>,
-    thrust: Vec<R>,
+    groups: SmallVec<[Group<R>; 1]>,
+    thrust: SmallVec<[R; 8]>,
 }
 
 impl<R: Real> ShaftLoads<R> {
     fn none(forces: &Forces<R>) -> Self {
-        Self { groups: vec![], thrust: vec![R::from(0.0); forces.shafts.len()] }
+        Self { groups: SmallVec::new(), thrust: smallvec![R::from(0.0); forces.shafts.len()] }
     }
 
     fn group(&mut self, number: usize, shaft: usize) -> &mut Group<R> {
         let n = self.thrust.len();
         let at = self.groups.iter().position(|g| g.number == number).unwrap_or_else(|| {
-            let none = vec![Wrench::none(); n];
-            self.groups.push(Group { number, touched: vec![false; n], teeth: none.clone(), rest: none });
+            let none: SmallVec<[Wrench<R>; 4]> = smallvec![Wrench::none(); n];
+            self.groups.push(Group { number, touched: smallvec![false; n], teeth: none.clone(), rest: none });
             self.groups.len() - 1
         });
         self.groups[at].touched[shaft] = true;

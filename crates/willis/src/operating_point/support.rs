@@ -3,6 +3,8 @@
 //! Where bearings hold a shaft in one way only (two along its length, one that locates it) the stiffness drops out, and
 //! this is plain equilibrium. Where there are more, equal stiffness is the assumption.
 
+use smallvec::SmallVec;
+
 use crate::real::Real;
 
 /// A pivot below this part of its own diagonal is none: nothing holds that movement.
@@ -47,9 +49,9 @@ impl<R: Real> Springs<R> {
     }
 
     /// Movements under loads.
-    pub fn solve(&self, loads: &[R]) -> Vec<R> {
+    pub fn solve(&self, loads: &[R]) -> SmallVec<[R; 8]> {
         let (n, none) = (loads.len(), R::from(0.0));
-        let mut x = loads.to_vec();
+        let mut x: SmallVec<[R; 8]> = loads.iter().copied().collect();
         for i in 0..n {
             if !self.held[i] {
                 x[i] = none;

@@ -1,5 +1,7 @@
 //! Forces where it is known which end of each element drives: linear equations, in any kind of number.
 
+use smallvec::{SmallVec, smallvec};
+
 use crate::kinematics::{Configuration, Element, Node};
 use crate::real::Real;
 use crate::statics::SolvedColumn;
@@ -38,9 +40,9 @@ impl Known<'_> {
         &self,
         entries: impl Fn(&SolvedColumn, &mut dyn FnMut(usize, R)),
         torques: impl Iterator<Item = (Node, R)>,
-    ) -> Option<Vec<R>> {
+    ) -> Option<SmallVec<[R; 8]>> {
         let n = self.columns.len();
-        let mut matrix = vec![R::from(0.0); n * (n + 1)];
+        let mut matrix: SmallVec<[R; 32]> = smallvec![R::from(0.0); n * (n + 1)];
         for (j, column) in self.columns.iter().enumerate() {
             entries(column, &mut |row, x| matrix[row * (n + 1) + j] += x);
         }
@@ -50,7 +52,7 @@ impl Known<'_> {
             }
         }
         eliminate(&mut matrix, n)?;
-        let mut forces = vec![R::from(0.0); self.c.elements.len()];
+        let mut forces: SmallVec<[R; 8]> = smallvec![R::from(0.0); self.c.elements.len()];
         for (row, column) in self.columns.iter().enumerate() {
             forces[column.element] = matrix[row * (n + 1) + n];
         }
