@@ -29,7 +29,7 @@ mod numbers;
 mod support;
 
 use std::borrow::Cow;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use num_dual::Dual;
 use serde::{Deserialize, Serialize};
@@ -237,7 +237,7 @@ pub(crate) struct Approach {
     step: Step,
     rounds: Trend,
     /// Where it is known already.
-    idle: Option<Idle>,
+    idle: Option<Arc<Idle>>,
 }
 
 /// What of the losses of a motion no load changes.
@@ -263,7 +263,7 @@ impl Approach {
     }
 
     /// With what no load changes.
-    pub fn with(self, idle: Idle) -> Self {
+    pub fn with(self, idle: Arc<Idle>) -> Self {
         Self { idle: Some(idle), ..self }
     }
 
@@ -482,6 +482,11 @@ impl<'t> Physics<'t> {
     fn at(train: Cow<'t, Train>, temperature: Option<f64>) -> Self {
         let numbers = Numbers::of(&train, temperature);
         Self::with_numbers(train, numbers)
+    }
+
+    /// Temperature of the oil, K.
+    pub fn temperature(&self) -> Option<f64> {
+        self.oil.as_ref().map(|(_, state)| state.temperature)
     }
 
     /// Brings the oil to another temperature, K.
@@ -842,7 +847,7 @@ impl Physics<'_> {
         let Approach { mut step, mut rounds, mut idle } = from;
         loop {
             let (own, flow) = solve(&step)?;
-            let next = self.step(&flow, motion, idle.get_or_insert_with(|| self.idle(&flow, motion)));
+            let next = self.step(&flow, motion, idle.get_or_insert_with(|| Arc::new(self.idle(&flow, motion))));
             let (change, loss) = self.change(&flow, &step, &next);
             if let Some(convergence) = rounds.ended(change, loss) {
                 return Some((step, own, flow, convergence));
@@ -859,7 +864,7 @@ impl Physics<'_> {
         mut solve: impl FnMut(&Step) -> Option<Flow>,
     ) -> Approach {
         while let Some(flow) = solve(&from.step) {
-            let next = self.step(&flow, motion, from.idle.get_or_insert_with(|| self.idle(&flow, motion)));
+            let next = self.step(&flow, motion, from.idle.get_or_insert_with(|| Arc::new(self.idle(&flow, motion))));
             let (change, loss) = self.change(&flow, &from.step, &next);
             let mut rounds = from.rounds;
             if rounds.ended(change, loss).is_some() {

@@ -1,6 +1,6 @@
 //! Laws and statics in floating point, where it is known which ends drive.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::kinematics::{Configuration, Motion, Node};
 use crate::operating_point::{Approach, Convergence, Idle, Physics, Step};
@@ -83,7 +83,20 @@ impl<'a> Rounds<'a> {
 
     /// Losses in agreement with the torques, from a train without any; `None` where other ends drive on the way.
     pub fn agree(&self, physics: &Physics<'_>, motion: &Motion) -> Option<Agreed> {
-        let (start, idle) = self.start(physics, motion)?;
+        let (start, idle) = self.start(physics, motion, None)?;
+        self.agree_from(physics, motion, Approach::new(start).with(idle))
+    }
+
+    /// The same, with what no load changes where `known` has it of these speeds at this temperature of the oil; else it is put
+    /// there.
+    pub fn agree_again(&self, physics: &Physics<'_>, motion: &Motion, known: &mut Option<KnownIdle>) -> Option<Agreed> {
+        let oil = physics.temperature();
+        let same = known.as_ref().filter(|k| k.speeds == self.speeds && k.oil == oil).map(|k| k.idle.clone());
+        let is_new = same.is_none();
+        let (start, idle) = self.start(physics, motion, same)?;
+        if is_new {
+            *known = Some(KnownIdle { speeds: self.speeds.clone(), oil, idle: idle.clone() });
+        }
         self.agree_from(physics, motion, Approach::new(start).with(idle))
     }
 
@@ -92,7 +105,7 @@ impl<'a> Rounds<'a> {
         let from = match near {
             Some(near) => Approach::closely(near.clone()),
             None => {
-                let (start, idle) = self.start(physics, motion)?;
+                let (start, idle) = self.start(physics, motion, None)?;
                 Approach::closely(start).with(idle)
             }
         };
@@ -100,9 +113,9 @@ impl<'a> Rounds<'a> {
     }
 
     /// The losses for the torques that there are without losses, and those of them that do not depend on the load.
-    fn start(&self, physics: &Physics<'_>, motion: &Motion) -> Option<(Step, Idle)> {
+    fn start(&self, physics: &Physics<'_>, motion: &Motion, idle: Option<Arc<Idle>>) -> Option<(Step, Arc<Idle>)> {
         let flow = self.flow(&Step::lossless(self.c().train))?;
-        let idle = physics.idle(&flow, motion);
+        let idle = idle.unwrap_or_else(|| Arc::new(physics.idle(&flow, motion)));
         Some((physics.step(&flow, motion, &idle), idle))
     }
 
@@ -186,6 +199,13 @@ impl<'a> Rounds<'a> {
         let gives = |x: &Acting| x.torque * self.speeds[x.member.0] < 0.0 && x.is_certain();
         self.flow(&step).is_some_and(|flow| self.acting(&step, &flow).iter().any(gives))
     }
+}
+
+/// What of the losses no load changes, and at which speeds and temperature of the oil.
+pub(super) struct KnownIdle {
+    speeds: Vec<f64>,
+    oil: Option<f64>,
+    idle: Arc<Idle>,
 }
 
 /// Losses and torques in agreement, in floating point.

@@ -20,7 +20,7 @@ use super::doubts::doubts;
 use super::heat::{TOLERANCE, made_by};
 use super::loads::Loads;
 use super::operation::Pattern;
-use super::rounds::{Acting, Agreed, Rounds};
+use super::rounds::{Acting, Agreed, KnownIdle, Rounds};
 use super::solution::{efficiency, held, member};
 use super::words::{self, Finding};
 use super::{Losses, OperationReport, OutsideLaw, Role, SolutionReport, Why, at_its_temperature};
@@ -120,6 +120,8 @@ struct Situation<'t> {
     transfer: Transfer,
     physics: Physics<'t>,
     patterns: Vec<Pattern>,
+    /// Of the last point: its neighbour may turn alike.
+    idle: Option<KnownIdle>,
 }
 
 /// What is prescribed, without the values.
@@ -206,7 +208,7 @@ impl<'t> PointSeries<'t> {
         let c = Configuration::new(train, engaged, &operation.fixed, &keep);
         let transfer = c.transfer(&speeds);
         let asked = Asked::of(operation);
-        self.situations.push(Situation { asked, c, transfer, physics, patterns: vec![] });
+        self.situations.push(Situation { asked, c, transfer, physics, patterns: vec![], idle: None });
         self.situations.last_mut()
     }
 
@@ -214,7 +216,7 @@ impl<'t> PointSeries<'t> {
     fn quick(&mut self, operation: &Operation) -> Option<Told> {
         let train = self.train;
         let known = self.situations.iter_mut().find(|s| s.asked.is_of(operation));
-        let Situation { c, transfer, physics, patterns, .. } = known?;
+        let Situation { c, transfer, physics, patterns, idle, .. } = known?;
         let motion = c.motion_by(transfer, &operation.speeds).ok().filter(|motion| motion.deviation.is_none())?;
         if !(0..motion.speeds.len()).all(|m| motion.si(MemberId(m)).is_some_and(f64::is_finite)) {
             return None;
@@ -223,7 +225,7 @@ impl<'t> PointSeries<'t> {
         let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
         let mut agreed = patterns.iter().filter(|p| p.suits(&sigma, &problem)).filter_map(|pattern| {
             let rounds = pattern.rounds(c, &motion, operation, &problem)?;
-            Known { train, pattern, rounds, motion: &motion }.agreed(physics, operation.temperature)
+            Known { train, pattern, rounds, motion: &motion }.agreed(physics, operation.temperature, idle)
         });
         let agreed = agreed.next()?;
         let flow = agreed.whole(c, &externals(c, &motion, &problem, &agreed)?);
@@ -289,7 +291,12 @@ struct Known<'a> {
 impl Known<'_> {
     /// Its losses and torques at a temperature, else at that of the heat balance, else at that of the oil; `None` where they
     /// are not beyond doubt the only ones.
-    fn agreed(&self, physics: &mut Physics<'_>, temperature: Option<f64>) -> Option<Agreed> {
+    fn agreed(
+        &self,
+        physics: &mut Physics<'_>,
+        temperature: Option<f64>,
+        idle: &mut Option<KnownIdle>,
+    ) -> Option<Agreed> {
         let oil = match (temperature, &self.train.heat) {
             (Some(oil), _) => Some(oil),
             (None, Some(heat)) => Some(self.oil(physics, heat)?),
@@ -298,7 +305,7 @@ impl Known<'_> {
         if let Some(oil) = oil {
             physics.warm_to(oil);
         }
-        self.only(self.rounds.agree(physics, self.motion))
+        self.only(self.rounds.agree_again(physics, self.motion, idle))
     }
 
     fn only(&self, agreed: Option<Agreed>) -> Option<Agreed> {

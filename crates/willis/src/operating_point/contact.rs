@@ -197,6 +197,13 @@ struct Place<R> {
 pub(super) struct Fixed<R> {
     loss_factor: R,
     pitch: Place<R>,
+    /// Sine of the operating pressure angle; radii of curvature at the pitch point, m; shortest length of the lines of contact
+    /// over the face width.
+    sine: R,
+    radius_transverse: R,
+    radius: R,
+    contact_length_ratio: R,
+    composite_roughness: R,
     /// Where friction that differs from place to place is averaged, with weights; empty for other laws.
     friction: Vec<(Place<R>, R)>,
     /// Where the rolling loss is averaged, with weights whose sum is one; empty without such a law.
@@ -209,6 +216,7 @@ pub(super) struct Fixed<R> {
 struct Loaded<'a, R: Real> {
     physics: &'a Physics<'a, R>,
     teeth: &'a Teeth<R>,
+    fixed: &'a Fixed<R>,
     /// Torque of the driving gear of one pair in parallel, N m, and what follows from it at the base circle, N.
     torque: R,
     base_force: R,
@@ -370,6 +378,7 @@ impl<R: Real> Physics<'_, R> {
         Loaded {
             physics: self,
             teeth,
+            fixed: self.fixed(teeth, flow),
             torque,
             base_force,
             normal_force: base_force / pair.cos_base_helix(),
@@ -398,6 +407,11 @@ impl<R: Real> Physics<'_, R> {
             Fixed {
                 loss_factor: self.train.laws.loss_factor(&self.friction).eval(&Path::of(pair)),
                 pitch: self.place(pair, none),
+                sine: pair.operating_pressure_angle.sin(),
+                radius_transverse: pair.reduced_radius_transverse(none),
+                radius: pair.reduced_radius(none),
+                contact_length_ratio: pair.shortest_contact_length_ratio(),
+                composite_roughness: composite(teeth),
                 friction: parts(teeth).flat_map(|[from, to]| gauss(from, to)).map(place).filter(|_| local).collect(),
                 rolling: both.map(place).filter(|_| self.rolling.is_some()).collect(),
                 ends: ends.map(|s| self.place(pair, s)).collect(),
@@ -468,9 +482,8 @@ impl<R: Real> Physics<'_, R> {
     }
 
     fn state(&self, mesh: &Mesh, loaded: &Loaded<'_, R>, p: &Point<R>, loss_factor: R) -> MeshContact<R> {
-        let Loaded { teeth, base_force, normal_force, pitch_line_speed, .. } = *loaded;
+        let Loaded { teeth, fixed, base_force, normal_force, pitch_line_speed, .. } = *loaded;
         let pair = &teeth.pair;
-        let composite = composite(teeth);
         // The smaller wheel first.
         let small = usize::from(pair.data.wheels[1].teeth < pair.data.wheels[0].teeth);
         let teeth_of = |k: usize| pair.data.wheels[k].teeth;
@@ -485,10 +498,10 @@ impl<R: Real> Physics<'_, R> {
         MeshContact {
             line_load: base_force / width,
             normal_force,
-            pitch_sum_speed: pitch_line_speed * 2.0 * pair.operating_pressure_angle.sin(),
+            pitch_sum_speed: pitch_line_speed * 2.0 * fixed.sine,
             pitch_line_speed,
-            pitch_radius_transverse: pair.reduced_radius_transverse(zero),
-            pitch_radius: pair.reduced_radius(zero),
+            pitch_radius_transverse: fixed.radius_transverse,
+            pitch_radius: fixed.radius,
             local_line_load: zero,
             sliding_speed: zero,
             sum_speed: zero,
@@ -500,7 +513,7 @@ impl<R: Real> Physics<'_, R> {
             kinematic_viscosity: oil(|o| o.kinematic_viscosity),
             pressure_viscosity: oil(|o| o.pressure_viscosity),
             roughness: (teeth.roughness[0] + teeth.roughness[1]) / 2.0,
-            composite_roughness: composite,
+            composite_roughness: fixed.composite_roughness,
             peak_roughness: (teeth.roughness[0] + teeth.roughness[1]) * PEAK,
             base: self.oil.as_ref().map_or(crate::catalogue::oil::Base::Mineral, |o| o.0.oil.base),
             lubricant_factor: self.oil.as_ref().and_then(|o| o.1.lubricant_factor),
@@ -511,7 +524,7 @@ impl<R: Real> Physics<'_, R> {
             helix: pair.operating_helix,
             pinion_diameter: pinion.reference_radius * 2.0,
             width,
-            contact_length_ratio: pair.shortest_contact_length_ratio(),
+            contact_length_ratio: fixed.contact_length_ratio,
             loss_factor,
             parallel: f64::from(mesh.count),
         }

@@ -101,6 +101,11 @@ struct Touch<R> {
     single: bool,
     /// Two planets whose places are not known relative to each other.
     unplaced: bool,
+    /// Of the operating pressure angle: tangent and cosine.
+    slope: R,
+    cosine: R,
+    /// Thrust over the force across the line of centres.
+    helix: R,
 }
 
 /// The place of a planet.
@@ -264,7 +269,8 @@ impl<R: Real> Forces<R> {
         let touches: Vec<Option<Touch<R>>> = (0..train.meshes.len())
             .map(|j| {
                 let mesh = &train.meshes[j];
-                let internal = teeth(j)?.pair.internal();
+                let pair = &teeth(j)?.pair;
+                let internal = pair.internal();
                 let both = [0, 1].map(|k| body(mesh.gears[k].member));
                 // From the axis of the gear inside to that of the ring around it, or from the first to the second.
                 let (direction, group, unplaced) = match both {
@@ -295,7 +301,12 @@ impl<R: Real> Forces<R> {
                 };
                 // A set whose number of planets is not told is taken as balanced.
                 let single = mesh.count == 1 && mesh.set.is_none_or(|s| train.sets[s].planets.is_some());
-                Some(Touch { bodies: both, toward, group, single, unplaced })
+                let (slope, cosine) = (pair.operating_pressure_angle.tan(), pair.operating_pressure_angle.cos());
+                let helix = match pair.data.double_helical {
+                    true => none,
+                    false => real::abs(pair.operating_helix.tan()),
+                };
+                Some(Touch { bodies: both, toward, group, single, unplaced, slope, cosine, helix })
             })
             .collect();
 
@@ -539,11 +550,7 @@ impl<R: Real> Physics<'_, R> {
         // sum is the centre distance.
         let across = (moments[0] + moments[1]) / (radius[0] + radius[1] * sense);
         let size = real::abs(across);
-        let apart = size * pair.operating_pressure_angle.tan();
-        let helix = match pair.data.double_helical {
-            true => R::from(0.0),
-            false => real::abs(pair.operating_helix.tan()),
-        };
+        let apart = size * touch.slope;
         let mut thrust = [R::from(0.0); 2];
         let mut tilt = R::from(0.0);
         let wrench = [0, 1].map(|k| {
@@ -553,12 +560,12 @@ impl<R: Real> Physics<'_, R> {
             let outward = if mesh.gears[k].internal { apart } else { -apart };
             let force = [-e[1] * own + e[0] * outward, e[0] * own + e[1] * outward];
             // On a right-handed flank a force along the rotation pushes backward.
-            thrust[k] = own * helix * -teeth.hand_of(k);
+            thrust[k] = own * touch.helix * -teeth.hand_of(k);
             let lever = radius[k] * thrust[k];
             tilt = real::max(tilt, real::abs(lever));
             Wrench { force, tilt: [force[0] * z - e[0] * lever, force[1] * z - e[1] * lever] }
         });
-        let amount = size / pair.operating_pressure_angle.cos();
+        let amount = size / touch.cosine;
         Some((touch, Pressed { wrench, thrust, size, amount, tilt }))
     }
 

@@ -77,11 +77,6 @@ impl Physics<'static> {
         self.evaluate(&flow.speeds, &flow.meshes, &|_| true)
     }
 
-    /// Temperature of the oil, K.
-    pub fn temperature(&self) -> Option<f64> {
-        self.oil.as_ref().map(|(_, state)| state.temperature)
-    }
-
     /// Name of the law of tooth friction in force.
     pub fn friction_law(&self) -> &'static str {
         self.friction.meta().id

@@ -12,6 +12,8 @@ use crate::units::{Dimension, Quantity, with_unit};
 const MOST: u64 = 1_000_000_000_000_000;
 /// Values up to so many are made once.
 const MOST_KEPT: usize = 1 << 20;
+/// Values up to so many are written once.
+const MOST_WRITTEN: usize = 4096;
 
 /// One quantity and the values it takes.
 ///
@@ -38,6 +40,8 @@ pub struct Axis {
     values: Values,
     /// The numbers, where they are few.
     numbers: Vec<f64>,
+    /// The values as the train file writes them, where they are fewer still.
+    written: Vec<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -74,13 +78,23 @@ impl Axis {
             Measure::Text | Measure::Flag => {
                 let all: Vec<String> = values.split(',').map(|v| v.trim().to_owned()).collect();
                 let all = target.choices(model, &all).unwrap_or(all);
-                Self { name: name.to_owned(), target, unit: String::new(), values: Values::Texts(all), numbers: vec![] }
+                Self {
+                    name: name.to_owned(),
+                    target,
+                    unit: String::new(),
+                    values: Values::Texts(all),
+                    numbers: vec![],
+                    written: vec![],
+                }
             }
             measure => {
                 let (values, unit) = numbers(text, values, measure)?;
-                let mut axis = Self { name: name.to_owned(), target, unit, values, numbers: vec![] };
+                let mut axis = Self { name: name.to_owned(), target, unit, values, numbers: vec![], written: vec![] };
                 if axis.len() <= MOST_KEPT {
                     axis.numbers = (0..axis.len()).map(|k| axis.make(k)).collect();
+                }
+                if axis.len() <= MOST_WRITTEN {
+                    axis.written = (0..axis.len()).map(|k| axis.write(k)).collect();
                 }
                 axis
             }
@@ -146,6 +160,10 @@ impl Axis {
 
     /// A value as the train file writes it.
     pub fn setting(&self, k: usize) -> String {
+        self.written.get(k).cloned().unwrap_or_else(|| self.write(k))
+    }
+
+    fn write(&self, k: usize) -> String {
         match (&self.values, self.unit.is_empty()) {
             (Values::Texts(all), _) => all[k].clone(),
             (_, true) => self.number(k).to_string(),
@@ -205,7 +223,8 @@ fn split(text: &str) -> (&str, &str) {
 /// ```
 pub fn values(text: &str, dimension: Dimension) -> Result<Vec<Quantity>, Box<Diagnostic>> {
     let (values, unit) = numbers(text, text, Measure::Quantity(dimension))?;
-    let axis = Axis { name: String::new(), target: Target::Temperature, unit, values, numbers: vec![] };
+    let axis =
+        Axis { name: String::new(), target: Target::Temperature, unit, values, numbers: vec![], written: vec![] };
     if axis.len() > MOST_KEPT {
         return Err(fault(text, format!("{} values are too many", axis.len())));
     }
