@@ -13,6 +13,7 @@
 //! E (tip of wheel 0).
 
 mod fault;
+pub mod hypoid;
 mod involute;
 mod planetary;
 mod stiffness;

@@ -64,6 +64,8 @@ const GROWTH: (f64, usize) = (1.5, 8);
 const LEAST_DRAG: f64 = 1e-50;
 /// Most of a mesh's power that its computed losses take: the efficiency stays above zero.
 const MOST_LOST: f64 = 0.95;
+/// Efficiency of the sliding along hypoid teeth below which the driving gear is held.
+const LEAST_LENGTHWISE: f64 = 1e-6;
 
 /// What kind of loss it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -385,6 +387,8 @@ pub(crate) struct Strains {
 #[derive(Clone, Debug)]
 struct MeshLoss<R = f64> {
     sliding: R,
+    /// Efficiency of the sliding along hypoid teeth, first gear driving and second gear driving; above zero.
+    lengthwise: Option<[R; 2]>,
     /// Bearing, and its part.
     bearings: SmallVec<[(usize, R); 2]>,
     /// Mean coefficient of friction of the teeth.
@@ -393,11 +397,25 @@ struct MeshLoss<R = f64> {
 
 impl<R: Real> MeshLoss<R> {
     fn none() -> Self {
-        Self { sliding: R::from(0.0), bearings: SmallVec::new(), friction: None }
+        Self { sliding: R::from(0.0), lengthwise: None, bearings: SmallVec::new(), friction: None }
     }
 
     fn total(&self) -> R {
         self.sliding + self.bearings.iter().fold(R::from(0.0), |sum, b| sum + b.1)
+    }
+
+    /// The efficiency with a gear driving.
+    fn efficiency(&self, driver: usize) -> R {
+        let across = -self.total() + 1.0;
+        self.lengthwise.map_or(across, |along| across * along[driver])
+    }
+
+    /// The part of the power that is lost with a gear driving.
+    fn lost(&self, driver: usize) -> R {
+        match self.lengthwise {
+            Some(_) => -self.efficiency(driver) + 1.0,
+            None => self.total(),
+        }
     }
 }
 
@@ -411,6 +429,8 @@ pub(crate) struct Step<R = f64> {
     bearings: Vec<R>,
     /// Efficiency of machines that have a map: variator and machine.
     machines: Vec<([usize; 2], f64)>,
+    /// Whether a gear that should drive is held by the friction along its teeth.
+    locked: bool,
 }
 
 impl Step {
@@ -421,11 +441,14 @@ impl Step {
 
     /// The configuration with the efficiencies of this round.
     pub fn configure<'t>(&self, c: &Configuration<'t>) -> Configuration<'t> {
-        let efficiency = |loss: f64| Rational::from_f64(1.0 - loss).unwrap_or(Rational::ONE);
+        let efficiency = |eta: f64| Rational::from_f64(eta).unwrap_or(Rational::ONE);
         let all = self.meshes.iter().zip(&c.train.meshes).map(|(own, mesh)| {
             let mut given = if mesh.computed { Efficiency::lossless() } else { mesh.efficiency.clone() };
-            if own.total() > 0.0 {
-                let own = efficiency(own.total());
+            if own.lengthwise.is_some() {
+                let [first, second] = [0, 1].map(|driver| efficiency(own.efficiency(driver)));
+                given = Efficiency { forward: given.forward * first, backward: given.backward * second };
+            } else if own.total() > 0.0 {
+                let own = efficiency(1.0 - own.total());
                 given = Efficiency { forward: given.forward * own.clone(), backward: given.backward * own };
             }
             given
@@ -443,6 +466,11 @@ impl Step {
 }
 
 impl Step {
+    /// Whether friction along hypoid teeth holds a gear that should drive.
+    pub fn is_locked(&self) -> bool {
+        self.locked
+    }
+
     /// The losses of the meshes alone.
     pub fn without_drags(&self) -> Self {
         let (sources, drags) = Default::default();
@@ -458,6 +486,7 @@ impl<R: Real> Step<R> {
             drags: vec![],
             bearings: vec![],
             machines: vec![],
+            locked: false,
         }
     }
 
@@ -467,7 +496,11 @@ impl<R: Real> Step<R> {
         all.map(|((own, mesh), given)| {
             let given = if mesh.computed { [R::from(1.0); 2] } else { *given };
             let total = own.total();
-            if total.re() > 0.0 { given.map(|eta| eta * (-total + 1.0)) } else { given }
+            match own.lengthwise {
+                Some(_) => [given[0] * own.efficiency(0), given[1] * own.efficiency(1)],
+                None if total.re() > 0.0 => given.map(|eta| eta * (-total + 1.0)),
+                None => given,
+            }
         })
         .collect()
     }
@@ -644,6 +677,7 @@ impl<'t, R: Real> Physics<'t, R> {
             }
         };
         let mut losses: Vec<MeshLoss<R>> = Vec::with_capacity(meshes.len());
+        let mut locked = false;
         for m in meshes {
             let mesh = &self.train.meshes[m.mesh.0];
             let Some(teeth) = &self.numbers.teeth[m.mesh.0] else {
@@ -667,7 +701,22 @@ impl<'t, R: Real> Physics<'t, R> {
                 (_, true, _) => -self.numbers.efficiencies[m.mesh.0][0] + 1.0,
                 _ => none,
             };
-            losses.push(MeshLoss { sliding, bearings: SmallVec::new(), friction: tooth.friction });
+            let mut own = MeshLoss { sliding, lengthwise: None, bearings: SmallVec::new(), friction: tooth.friction };
+            if let Some(hypoid) = teeth.hypoid.as_ref().filter(|_| mesh.computed) {
+                let along = match (tooth.friction, m.driver) {
+                    (Some(mu), Some(driver)) => {
+                        let along = hypoid.lengthwise_efficiency(teeth.pair.data.pressure_angle, mu);
+                        locked |= along[driver].re() < LEAST_LENGTHWISE;
+                        along
+                    }
+                    _ => {
+                        own.sliding = none;
+                        self.numbers.efficiencies[m.mesh.0]
+                    }
+                };
+                own.lengthwise = Some(along.map(|eta| real::max(eta, R::from(LEAST_LENGTHWISE))));
+            }
+            losses.push(own);
         }
         let mut bearings = Vec::with_capacity(self.train.bearings.len());
         let reactions = self.oil.as_ref().map(|_| self.reactions(speeds, meshes));
@@ -701,7 +750,7 @@ impl<'t, R: Real> Physics<'t, R> {
         }
         sources.extend(without_load.drags.iter().map(|d| d.0));
         drags.extend(without_load.drags.iter().map(|d| d.1));
-        Step { meshes: losses, sources, drags, bearings, machines: vec![] }
+        Step { meshes: losses, sources, drags, bearings, machines: vec![], locked }
     }
 
     /// Every loss of a solved step: what loses it, what kind it is, its law, the power in W; what has one name, kind
@@ -809,7 +858,8 @@ impl Physics<'_> {
     fn change(&self, flow: &Flow, old: &Step, new: &Step) -> (f64, f64) {
         let mut change = 0.0;
         for (m, (a, b)) in flow.meshes.iter().zip(old.meshes.iter().zip(&new.meshes)) {
-            change += m.potential_power * (a.total() - b.total()).abs();
+            let driver = m.driver.unwrap_or(0);
+            change += m.potential_power * (a.lost(driver) - b.lost(driver)).abs();
         }
         for (at, eta) in &new.machines {
             let before = old.machines.iter().find(|m| m.0 == *at).map_or(1.0, |m| m.1);
@@ -932,6 +982,11 @@ impl Physics<'_> {
             contact.friction = own.friction;
             let bearings: f64 = own.bearings.iter().map(|b| b.1).sum();
             contact.sliding_loss_w = (m.loss - m.potential_power * bearings).max(0.0);
+            if let (Some(along), Some(driver), Some(_)) = (own.lengthwise, m.driver, own.friction) {
+                contact.lengthwise_efficiency = Some(along[driver]);
+                contact.lengthwise_loss_w =
+                    Some((m.potential_power * (1.0 - along[driver])).min(contact.sliding_loss_w));
+            }
             let rolling = step.sources.iter().zip(&flow.drag_losses);
             contact.rolling_loss_w =
                 rolling.filter(|(s, _)| **s == Source::Rolling(m.mesh.0)).map(|(_, loss)| *loss).sum::<f64>() + 0.0;

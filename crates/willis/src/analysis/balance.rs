@@ -67,7 +67,12 @@ impl<'a> Setting<'a> {
             Err(Unsolvable::TooManyLoads(n)) => return Err(problem.too_many(&c, n)),
             Err(_) => return Ok(None),
         };
-        let answer = equilibrium.solve(&problem.torques);
+        let mut answer = equilibrium.solve(&problem.torques);
+        if step.is_locked() {
+            // Whatever the torques are: the gear that drives here cannot.
+            answer.solutions.clear();
+            answer.stretches.clear();
+        }
         Ok(Some(Solved { c, problem, equilibrium, answer }))
     }
 

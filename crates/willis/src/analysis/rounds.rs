@@ -52,6 +52,9 @@ impl<'a> Rounds<'a> {
     /// that carried nothing does now.
     pub fn flow(&self, step: &Step) -> Option<Flow> {
         let (c, known) = (self.c(), self.known);
+        if step.is_locked() {
+            return None;
+        }
         let efficiencies = step.efficiencies(c.train, &self.given);
         let dragged = step.drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]);
         let dragged = dragged.map(|(member, torque)| (c.node(member), torque));

@@ -648,8 +648,9 @@ impl Engine {
         let mut change = 0.0;
         for e in &self.system.elements {
             if let Some(mesh) = e.law {
-                change +=
-                    (next.lost(mesh) - laws.step.lost(mesh)).abs() * laws.flow.meshes[mesh.index()].torques[0].abs();
+                let (new, old) = (next.lost(mesh), laws.step.lost(mesh));
+                let differs = (new[0] - old[0]).abs().max((new[1] - old[1]).abs());
+                change += differs * laws.flow.meshes[mesh.index()].torques[0].abs();
             }
         }
         for (new, old) in torques.iter().zip(&laws.torques) {

@@ -92,8 +92,8 @@ impl Laws {
 
     /// The loss of a mesh in proportion to its load.
     pub fn loss(&self, mesh: MeshId) -> Loss {
-        let lost = self.step.lost(mesh);
-        Loss { drive: lost, coast: 1.0 - 1.0 / (1.0 - lost), drive_torque: 0.0, coast_torque: 0.0 }
+        let [drive, lost] = self.step.lost(mesh);
+        Loss { drive, coast: 1.0 - 1.0 / (1.0 - lost), drive_torque: 0.0, coast_torque: 0.0 }
     }
 
     /// What is followed, and what is not; `warms` where the temperature of the oil follows the losses.

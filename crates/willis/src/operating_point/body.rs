@@ -113,8 +113,8 @@ impl<R: Real> Physics<'_, R> {
         let teeth = self.numbers.teeth[body.mesh].as_ref()?;
         let (pair, gear) = (&teeth.pair, &teeth.pair.gears[body.gear]);
         // Bevel gears as discs of their size at the middle of the face width.
-        let cone = teeth.cone(body.gear);
-        let z = pair.data.wheels[body.gear].teeth * cone;
+        let size = teeth.size(body.gear);
+        let z = pair.data.wheels[body.gear].teeth * teeth.cone(body.gear);
         Some(match body.immersion {
             Some(still) => {
                 let immersion = teeth.immersion[body.gear].unwrap_or(R::from(still));
@@ -123,15 +123,15 @@ impl<R: Real> Physics<'_, R> {
                 let spun = orbit.map_or(R::from(0.0), |(p, [radius, _])| speeds[p.carrier.0].powi(2) * *radius);
                 Wet::Dip(Dip {
                     speed,
-                    radius: gear.reference_radius * cone,
-                    tip_radius: gear.tip_radius * cone,
-                    root_radius: gear.root_radius * cone,
+                    radius: gear.reference_radius * size,
+                    tip_radius: gear.tip_radius * size,
+                    root_radius: gear.root_radius * size,
                     width: pair.total_width(),
                     module: pair.data.module,
                     teeth: z,
                     helix: pair.data.helix,
                     pressure_angle: pair.transverse_pressure_angle,
-                    immersion: real::min(immersion, gear.reference_radius * (2.0 * cone)),
+                    immersion: real::min(immersion, gear.reference_radius * (2.0 * size)),
                     oil_volume: oil.volume.unwrap_or(R::from(1e-3)),
                     kinematic_viscosity: oil.kinematic_viscosity,
                     density: oil.density,
@@ -140,12 +140,12 @@ impl<R: Real> Physics<'_, R> {
             }
             None => {
                 let (density, viscosity) = self.fluid(Fluid::Mist);
-                let free = gear.reference_radius * cone;
+                let free = gear.reference_radius * size;
                 let gap = self.numbers.axial_gap.map_or(free, |g| real::min(g, free));
                 Wet::Disc(Disc {
                     speed,
-                    radius: gear.reference_radius * cone,
-                    root_radius: gear.root_radius * cone,
+                    radius: gear.reference_radius * size,
+                    root_radius: gear.root_radius * size,
                     width: pair.total_width(),
                     module: pair.data.module,
                     teeth: z,

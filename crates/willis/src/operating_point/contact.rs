@@ -98,6 +98,12 @@ pub struct ContactReport {
     pub regime: Option<Regime>,
     /// Loss by sliding, all pairs in parallel, W.
     pub sliding_loss_w: f64,
+    /// The part of it by sliding along the teeth of hypoid gears, W.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lengthwise_loss_w: Option<f64>,
+    /// The efficiency of that sliding alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lengthwise_efficiency: Option<f64>,
     /// Loss by rolling where it is computed apart, all pairs in parallel, W.
     pub rolling_loss_w: f64,
 }
@@ -129,7 +135,9 @@ const PEAK: f64 = 6.0;
 #[derive(Clone, Copy)]
 struct Point<R> {
     line_load: R,
+    /// Speed of sliding, and what of it is along the profiles.
     sliding: R,
+    profile: R,
     sum: R,
     radius: R,
     pressure: R,
@@ -226,6 +234,8 @@ struct Loaded<'a, R: Real> {
     pitch_line_speed: R,
     /// Speed of the first gear relative to the carrier, ≥ 0, rad/s.
     speed: R,
+    /// Speed of hypoid teeth along each other, m/s.
+    along: Option<R>,
     /// Tip relief under this load.
     relief: Relief<R>,
 }
@@ -255,14 +265,15 @@ impl<R: Real> Loaded<'_, R> {
     fn at(&self, place: &Place<R>) -> Point<R> {
         let [line_load, pressure] = self.pressed(place);
         let radius = place.radius;
-        let [sliding, sum] = [place.sliding, place.sum].map(|per_speed| per_speed * self.speed);
+        let [profile, sum] = [place.sliding, place.sum].map(|per_speed| per_speed * self.speed);
+        let sliding = self.along.map_or(profile, |along| root(profile * profile + along * along));
         let none = R::from(0.0);
         let film = self
             .physics
             .oil
             .as_ref()
             .map_or(none, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
-        Point { line_load, sliding, sum, radius, pressure, film }
+        Point { line_load, sliding, profile, sum, radius, pressure, film }
     }
 
     /// The loss factor under this load.
@@ -375,6 +386,7 @@ impl<R: Real> Physics<'_, R> {
         // Of bevel gears those of the virtual pair, which turns more slowly: the power is the same.
         let torque = real::abs(flow.torques[driver]) / (f64::from(mesh.count) * teeth.cone(driver)) * times;
         let base_force = torque / pair.gears[driver].base_radius;
+        let speed = real::abs(flow.relative_speeds[0]) * teeth.cone(0);
         Loaded {
             physics: self,
             teeth,
@@ -385,7 +397,8 @@ impl<R: Real> Physics<'_, R> {
             pitch_line_speed: real::abs(flow.relative_speeds[driver])
                 * teeth.cone(driver)
                 * pair.gears[driver].operating_radius,
-            speed: real::abs(flow.relative_speeds[0]) * teeth.cone(0),
+            speed,
+            along: teeth.hypoid.as_ref().map(|_| teeth.lengthwise_per_speed() * speed),
             relief: teeth.relief(base_force),
         }
     }
@@ -584,7 +597,8 @@ impl Physics<'_> {
                 film,
                 film_ratio: film.filter(|_| composite > 0.0).map(|h| h / composite),
                 friction,
-                loss: friction.map(|mu| mu * force * p.sliding),
+                // Along hypoid teeth as if alone, as in the whole.
+                loss: friction.map(|mu| mu * force * (p.profile + loaded.along.unwrap_or(0.0))),
             }
         };
         let [start, end] = pair.path();
@@ -652,6 +666,8 @@ impl Physics<'_> {
             film_ratio,
             regime: film_ratio.map(Regime::of),
             sliding_loss_w: 0.0,
+            lengthwise_loss_w: None,
+            lengthwise_efficiency: None,
             rolling_loss_w: 0.0,
         }
     }

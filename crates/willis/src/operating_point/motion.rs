@@ -91,9 +91,9 @@ impl Step {
         found.map_or(0.0, |(_, d)| d.torque.abs())
     }
 
-    /// Part of a mesh's power that is lost in proportion to its load.
-    pub fn lost(&self, mesh: MeshId) -> f64 {
-        self.meshes[mesh.0].total()
+    /// Part of a mesh's power that is lost in proportion to its load, first gear driving and second gear driving.
+    pub fn lost(&self, mesh: MeshId) -> [f64; 2] {
+        [0, 1].map(|driver| self.meshes[mesh.0].lost(driver).min(super::MOST_LOST))
     }
 
     /// How much of that each bearing takes: its place and its part of the whole.

@@ -173,9 +173,13 @@ pub struct QuantitySensitivity {
     pub unit: String,
     /// Whether it is not given but taken.
     pub assumed: bool,
-    /// Quantities of the same teeth that move with it in proportion, because alone it would contradict them.
+    /// Quantities of the same teeth that move with it, because alone it would contradict them: in proportion, profile shifts by
+    /// as much.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub together: Vec<String>,
+    /// Profile shifts that move by as much the other way, because the centre distance is given.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub opposite: Vec<String>,
     /// The step for which changes are told.
     pub step: StepKind,
     /// That step, SI; negative where it is one to less.
@@ -224,8 +228,11 @@ struct Quantity {
     assumed: bool,
     /// What moves with it, and at which rate.
     slots: Vec<(Slot, f64)>,
-    /// Other quantities of the file that these are, in proportion.
+    /// Other quantities of the file that these are, in proportion; profile shifts by as much, and the other way.
     together: Vec<String>,
+    opposite: Vec<String>,
+    /// Whether it can move at all.
+    fits: bool,
     moved: Moved,
 }
 
@@ -418,6 +425,11 @@ fn of_operation(
             all.without_derivative.push((quantity.name, why));
             continue;
         }
+        if !quantity.fits {
+            let why = "the centre distances are given, and no other shifts in this ring of gears keep them all";
+            all.without_derivative.push((quantity.name, why.into()));
+            continue;
+        }
         let numbers = seeded::numbers(train, operation.temperature, &quantity.slots);
         let found = numbers.and_then(|n| powers(train, operation, point, n, quantity.moved));
         let Some(mut found) = found else {
@@ -498,6 +510,7 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
         unit: quantity.unit.to_owned(),
         assumed: quantity.assumed,
         together: quantity.together,
+        opposite: quantity.opposite,
         step,
         step_size,
         efficiency_derivative: efficiency,
@@ -549,6 +562,33 @@ fn together<'t>(train: &'t Train, input: &Input) -> Vec<&'t Input> {
     train.inputs.iter().filter(|i| i.path != input.path && i.slots.iter().any(moves)).collect()
 }
 
+/// What must move with a profile shift so that centre distances that are given hold, each with its rate: the shift of the other gear
+/// the other way, of a ring and its planet the same way, from gear to gear. Of bevel gears too, whose shifts are opposite. `None`
+/// where that comes back to a gear with another rate.
+fn shifts_together<'t>(train: &'t Train, input: &'t Input) -> Option<Vec<(&'t Input, f64)>> {
+    let mut all = vec![(input, 1.0)];
+    let mut next = 0;
+    while let Some(&(own, rate)) = all.get(next) {
+        next += 1;
+        for slot in &own.slots {
+            let Slot::Shift(j, k) = *slot else { continue };
+            let Some(teeth) = &train.meshes[j].teeth else { continue };
+            if teeth.pair.data.centre_distance.is_none() && teeth.cones.is_none() {
+                continue;
+            }
+            let wanted = if teeth.pair.internal() { rate } else { -rate };
+            let Some(other) = train.inputs.iter().find(|i| i.slots.contains(&Slot::Shift(j, 1 - k))) else { continue };
+            match all.iter().find(|(i, _)| i.path == other.path) {
+                Some((_, rate)) if *rate == wanted => {}
+                Some(_) => return None,
+                None => all.push((other, wanted)),
+            }
+        }
+    }
+    all.remove(0);
+    Some(all)
+}
+
 /// Every continuous quantity of train and operation.
 fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
     let mut all = Vec::new();
@@ -566,9 +606,16 @@ fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
         };
         let with = together(train, input);
         let along = with.iter().flat_map(|o| o.slots.iter().map(|s| (*s, o.value / input.value)));
+        let shifts = shifts_together(train, input);
+        let fits = shifts.is_some();
+        let shifts = shifts.unwrap_or_default();
+        let along = along.chain(shifts.iter().flat_map(|(o, rate)| o.slots.iter().map(|s| (*s, *rate))));
         let slots = input.slots.iter().map(|s| (*s, 1.0)).chain(along).collect();
-        let together = with.iter().map(|o| o.path.clone()).collect();
-        all.push(Quantity { name, value, unit: input.unit, assumed, slots, together, moved: Moved::Train });
+        let turned = |way: f64| shifts.iter().filter(move |s| s.1 == way).map(|s| s.0.path.clone());
+        let together = with.iter().map(|o| o.path.clone()).chain(turned(1.0)).collect();
+        let opposite = turned(-1.0).collect();
+        let moved = Moved::Train;
+        all.push(Quantity { name, value, unit: input.unit, assumed, slots, together, opposite, fits, moved });
     }
     let moving = |name: String, value: f64, unit: &'static str, moved: Moved| Quantity {
         name,
@@ -577,6 +624,8 @@ fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
         assumed: false,
         slots: vec![],
         together: vec![],
+        opposite: vec![],
+        fits: true,
         moved,
     };
     for (k, (member, speed)) in operation.speeds.iter().enumerate() {
@@ -641,6 +690,8 @@ fn notes(train: &Train, point: &Point<'_>) -> Vec<String> {
     {
         all.push(format!("{}: viscosity is the catalogue's; its temperature moves it", l.oil.name));
     }
+    let hypoid = train.meshes.iter().filter(|m| m.teeth.as_ref().is_some_and(|t| t.hypoid.is_some()));
+    all.extend(hypoid.map(|m| format!("{}: its spiral angles are not moved", m.name)));
     for table in &train.loss_tables {
         let name = &train.meshes[table.mesh.index()].name;
         all.push(format!("{name}: the first row of its loss table is in force and is not moved"));

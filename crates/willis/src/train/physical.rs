@@ -3,6 +3,7 @@
 use crate::catalogue::bearing::Bearing;
 use crate::catalogue::oil::{Oil, Viscosity};
 use crate::geometry::Pair;
+use crate::geometry::hypoid::Hypoid;
 use crate::losses::load_sharing::Relief;
 use crate::losses::seal::Material;
 use crate::real::{self, Real};
@@ -20,8 +21,11 @@ pub struct Teeth<R = f64> {
     /// The involute pair; its wheels stand in the order of the mesh's gears. Of bevel gears the virtual cylindrical pair at the
     /// middle of the face width: `z_v = z/cos δ`, `d_v = d_m/cos δ` (Tredgold), on the part of the width that carries.
     pub pair: Pair<R>,
-    /// `cos δ` of the two pitch cones of bevel gears: the virtual gears turn so many times as fast. None of cylindrical gears.
+    /// How many times as fast as bevel gears their virtual gears turn: `cos δ` of the pitch cones, of hypoid gears
+    /// [another factor](Hypoid::speed_factor). None of cylindrical gears.
     pub cones: Option<[f64; 2]>,
+    /// What makes bevel gears hypoid gears.
+    pub hypoid: Option<Hypoid>,
     /// Arithmetic mean roughness of both flanks, m.
     pub roughness: [R; 2],
     /// Depth of immersion of both gears at rest, m.
@@ -61,6 +65,17 @@ impl<R: Real> Teeth<R> {
     /// Speed of a gear of the pair over that of the gear of the mesh: 1, of bevel gears `cos δ`.
     pub(crate) fn cone(&self, gear: usize) -> f64 {
         self.cones.map_or(1.0, |c| c[gear])
+    }
+
+    /// Radius of a gear of the mesh over that of the pair.
+    pub(crate) fn size(&self, gear: usize) -> f64 {
+        self.hypoid.as_ref().map_or(self.cone(gear), |h| h.radius_factor(gear))
+    }
+
+    /// Speed along the teeth of hypoid gears over that of the first gear of the pair, m; zero of others.
+    pub(crate) fn lengthwise_per_speed(&self) -> R {
+        let Some(hypoid) = &self.hypoid else { return R::from(0.0) };
+        self.pair.gears[0].operating_radius * (hypoid.helix().cos() * hypoid.lengthwise())
     }
 
     /// Reduced modulus `E' = E/(1 − ν²)` of two equal materials, Pa.

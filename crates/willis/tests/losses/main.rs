@@ -6,4 +6,6 @@ mod common;
 mod bevel;
 mod components;
 mod geometry;
+mod hypoid;
+mod large_bearings;
 mod laws;

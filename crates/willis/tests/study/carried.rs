@@ -144,8 +144,8 @@ fn generated() -> Vec<(&'static str, String)> {
              {b} }}]\ncarrier = 'frame'\ncount = 2\nangle = '30 deg'\ngeometry = {}\n\
              [[mesh]]\nname = 'R'\ngears = [{{ member = 'lay', teeth = 20 }}, {{ member = 'mid', teeth = 60, internal = true }}]\n\
              efficiency = 0.98\n\
-             [[mesh]]\nname = 'H'\ngears = [{{ member = 'mid', teeth = 20 }}, {{ member = 'end', teeth = 40 }}]\nkind = 'bevel'\n\
-             geometry = {{ module = '3 mm', width = '20 mm', shaft_angle = '80 deg' }}\n\
+             [[mesh]]\nname = 'H'\ngears = [{{ member = 'mid', teeth = 20, spiral_angle = '45 deg' }}, {{ member = 'end', teeth = 40, spiral_angle = '30 deg' }}]\nkind = 'bevel'\n\
+             geometry = {{ module = '3 mm', width = '20 mm', shaft_angle = '80 deg', offset = '18 mm' }}\n\
              efficiency = {{ forward = 0.97, backward = 0.96 }}\n\
              [[mesh]]\nname = 'K'\ngears = [{{ member = 'end', teeth = 20 }}, {{ member = 'carrier', teeth = 30 }}]\nsense = 'same'\n\
              loss_table = [{{ speed = '0 rpm', forward = 0.96, backward = 0.95, forward_torque = '1 N m', \

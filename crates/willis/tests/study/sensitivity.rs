@@ -38,6 +38,17 @@ fn edited(text: &str, operation: &str, name: &str, value: f64, unit: &str) -> St
 /// The same, and what moves with the quantity in proportion.
 fn moved(text: &str, operation: &str, q: &QuantitySensitivity, value: f64) -> String {
     let mut text = edited(text, operation, &q.name, value, &q.unit);
+    if q.name.ends_with(".shift") {
+        for (others, way) in [(&q.together, 1.0), (&q.opposite, -1.0)] {
+            for other in others {
+                let document = Document::parse(&text).expect("TOML");
+                let key = document.find(other).unwrap_or_else(|d| panic!("{other}: {}", d.message));
+                let own = document.value(&key).map_or(0.0, |x| x.parse::<f64>().expect("a number"));
+                text = edited(&text, operation, other, own + way * (value - q.value), "-");
+            }
+        }
+        return text;
+    }
     for other in &q.together {
         let document = Document::parse(&text).expect("TOML");
         let key = document.find(other).unwrap_or_else(|d| panic!("{other}: {}", d.message));
@@ -530,4 +541,54 @@ fn no_step_of_an_efficiency_passes_one() {
         }
     }
     assert!(less > 10, "{less}");
+}
+
+/// In a given centre distance a shift moves with those of the gears around it: sun and planet the other way, planet and ring the
+/// same way. Where the centre distance follows from the shifts, it moves alone.
+#[test]
+fn shifts_move_so_that_a_given_centre_distance_holds() {
+    let text = |centre: &str| {
+        format!(
+            r#"
+            format = 1
+            name = "shifted"
+            members = ["sun", "carrier"]
+            terminals = ["sun", "carrier"]
+            [[set]]
+            name = "P1"
+            sun = {{ member = "sun", teeth = 17, shift = 0.2 }}
+            planet = {{ teeth = 22, count = 3, shift = 0.1 }}
+            ring = {{ member = "frame", teeth = 61, shift = 0.4 }}
+            carrier = "carrier"
+            geometry = {{ module = "4 mm", width = "50 mm"{centre} }}
+            [[operation]]
+            name = "rated"
+            speeds = {{ sun = "1000 rpm" }}
+            torques = {{ sun = "1000 N m" }}
+            "#
+        )
+    };
+    let given = text(", centre_distance = \"79.15 mm\"");
+    let all = all_of(&given);
+    let of = |name: &str| all.operations[0].quantities.iter().find(|q| q.name.ends_with(name)).expect("a shift");
+    let [sun, planet, ring] = ["sun.shift", "planet.shift", "ring.shift"].map(of);
+    assert_eq!([sun.opposite.len(), sun.together.len()], [2, 0], "{:?}", sun);
+    assert_eq!([planet.opposite.len(), planet.together.len()], [1, 1]);
+    assert_eq!(ring.opposite, planet.opposite);
+    // One movement, told from three gears.
+    assert!((sun.loss_derivative_w + planet.loss_derivative_w).abs() < 1e-9 * planet.loss_derivative_w.abs());
+    assert!((ring.loss_derivative_w - planet.loss_derivative_w).abs() < 1e-9 * planet.loss_derivative_w.abs());
+    let (off, what) = worst(&given, &all.operations[0]);
+    assert!(off < 1e-5, "{off:.1e}: {what}");
+
+    let pair = given
+        .replace("ring = { member = \"frame\", teeth = 61, shift = 0.4 }", "")
+        .replace(", centre_distance = \"79.15 mm\"", "");
+    let pair = pair.replace("speeds = { sun", "speeds = { carrier = \"0 rpm\", sun");
+    if let Ok(train) = Train::from_toml(&pair)
+        && let Ok(all) = sensitivity(&train, &Selection::default())
+    {
+        let mut shifts = all.operations[0].quantities.iter().filter(|q| q.name.ends_with(".shift"));
+        assert!(shifts.all(|q| q.opposite.is_empty() && q.together.is_empty()));
+    }
 }

@@ -92,7 +92,20 @@ fn contacts(all: &Named<ContactReport>) -> String {
     }
     right(&mut t, 1..11);
     right(&mut t, 12..13);
-    show(&t)
+    let mut out = show(&t);
+    for (name, c) in all.iter() {
+        if let (Some(loss), Some(eta)) = (c.lengthwise_loss_w, c.lengthwise_efficiency) {
+            let text = format!(
+                "{name}: hypoid teeth, {} of {} W by sliding along them (efficiency of that alone {})",
+                significant(loss, 4),
+                significant(c.sliding_loss_w, 4),
+                significant(eta, 5)
+            );
+            out += &dim(&format!("  {text}"));
+            out.push('\n');
+        }
+    }
+    out
 }
 
 fn bearings(all: &Named<BearingReport>) -> String {

@@ -67,9 +67,15 @@ fn operation(o: &OperationSensitivity) -> String {
         out += &dim("  * not given: what is taken instead");
         out.push('\n');
     }
-    for q in o.quantities.iter().filter(|q| !q.together.is_empty()) {
-        let text =
-            format!("{} moves in proportion with {}: alone it would contradict them", q.name, q.together.join(", "));
+    for q in o.quantities.iter().filter(|q| !q.together.is_empty() || !q.opposite.is_empty()) {
+        let with = q.together.join(", ");
+        let text = match (&q.opposite[..], &with[..]) {
+            ([], with) => format!("{} moves in proportion with {with}: alone it would contradict them", q.name),
+            (others, with) => {
+                let with = if with.is_empty() { String::new() } else { format!("with {with}, and ") };
+                format!("{} moves {with}against {}: their sum is settled", q.name, others.join(", "))
+            }
+        };
         out += &dim(&wrap(&text, "  "));
         out.push('\n');
     }

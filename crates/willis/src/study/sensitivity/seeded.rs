@@ -32,12 +32,27 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
         };
         let mut data = pair_data(&t.pair.data, j, &seeded);
         if t.cones.is_some() {
-            // The width of the file is that of the real teeth.
-            data.width.eps *= BEVEL_WIDTH;
+            // Width and tips of the file are those of the real teeth.
+            let width = BEVEL_WIDTH
+                * t.hypoid
+                    .as_ref()
+                    .map_or(1.0, |h| h.width_factor(usize::from(mesh.gears[1].teeth >= mesh.gears[0].teeth)));
+            data.width.eps *= width;
+            for (k, wheel) in data.wheels.iter_mut().enumerate() {
+                let Tip::Radius(radius) = &mut wheel.tip else { continue };
+                let cone = t.hypoid.as_ref().map_or(t.cone(k), |h| h.cones[k].cos());
+                radius.eps /= cone;
+                if let Some(h) = &t.hypoid {
+                    // The addendum is what the pitch circle leaves of it, and that grows with the module.
+                    let pitch = wheel.teeth / (2.0 * data.helix.re.cos());
+                    radius.eps += data.module.eps * pitch * (1.0 - h.radius_factor(k) / cone);
+                }
+            }
         }
         teeth.push(Some(Teeth {
             pair: Pair::new(&data).ok()?,
             cones: t.cones,
+            hypoid: t.hypoid.clone(),
             roughness: [0, 1].map(|k| seeded(Slot::Roughness(j, k), t.roughness[k])),
             immersion: [0, 1].map(|k| t.immersion[k].map(|depth| seeded(Slot::Immersion(j, k), depth))),
             jet: t.jet.map(|jet| Jet {

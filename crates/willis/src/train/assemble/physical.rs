@@ -4,6 +4,7 @@ use crate::catalogue::bearing::{self, Bearing};
 use crate::catalogue::oil::{self, Base, Oil};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
+use crate::geometry::hypoid::Hypoid;
 use crate::geometry::{Pair, PairData, Tip, Wheel};
 use crate::losses::loss_factor::Path;
 use crate::losses::seal::Material;
@@ -36,6 +37,23 @@ const PACK_FLOW: f64 = 1e-4 / 60.0;
 const USUAL_ANGLES: std::ops::RangeInclusive<f64> = 0.209..=0.699;
 /// Backlash beyond which shifts and centre distance do not belong together, in modules.
 const USUAL_BACKLASH: f64 = 0.5;
+/// Largest spiral angle, rad: 80 degrees.
+const MOST_SPIRAL: f64 = 1.397;
+/// How far a given offset may be from the one that follows from the spiral angles: what rounded angles and other cones make of it.
+const OFFSET: f64 = 0.1;
+
+/// Pitch cones of bevel or hypoid gears, as the virtual pair sees them.
+struct Cones {
+    /// How many times as fast the virtual gears turn.
+    factors: [f64; 2],
+    helix: f64,
+    hypoid: Option<Hypoid>,
+}
+
+/// The gear with more teeth: face widths of hypoid pairs are that gear's.
+fn wheel_of(gears: [(f64, bool, &PlainTooth); 2]) -> usize {
+    usize::from(gears[1].0 >= gears[0].0)
+}
 
 /// Whether operating angle and backlash are those of teeth in use.
 fn usual(pair: &Pair) -> bool {
@@ -81,15 +99,32 @@ impl Assembler<'_> {
         place: &str,
     ) -> Option<Teeth> {
         let at = format!("{place}.geometry");
-        let cones = match (bevel, g.shaft_angle) {
-            (true, _) => Some(self.cones(g, gears, title, &at)?),
+        for (_, _, t) in gears.iter().filter(|_| !bevel) {
+            if t.spiral_angle.is_some() {
+                let message = format!("{}: a spiral angle, but the gears are cylindrical", clip(title));
+                let d = Diagnostic::new(Code::Conflict, place, message);
+                self.report_once(d.hint("give `helix` in the geometry, or make it a bevel pair"));
+                return None;
+            }
+        }
+        if g.offset.is_some() && !bevel {
+            let message = format!("{}: an offset, but the axes of cylindrical gears are parallel", clip(title));
+            let d = Diagnostic::new(Code::Conflict, format!("{at}.offset"), message);
+            self.report_once(d.hint("give `centre_distance`, or make it a bevel pair"));
+            return None;
+        }
+        let (cones, helix, hypoid) = match (bevel, g.shaft_angle) {
+            (true, _) => {
+                let own = self.cones(g, gears, title, place)?;
+                (Some(own.factors), own.helix, own.hypoid)
+            }
             (false, Some(_)) => {
                 let message = format!("{}: a shaft angle, but the axes of cylindrical gears are parallel", clip(title));
                 let d = Diagnostic::new(Code::Conflict, format!("{at}.shaft_angle"), message);
                 self.report_once(d.hint("leave it out, or make it a bevel pair"));
                 return None;
             }
-            (false, None) => None,
+            (false, None) => (None, g.helix(), None),
         };
         let mut good = true;
         for (value, zero, what, unit, key) in [
@@ -145,7 +180,13 @@ impl Assembler<'_> {
             internal: *internal,
             shift: t.shift.unwrap_or(0.0),
             tip: match t.tip_diameter {
-                Some(d) => Tip::Radius(d / (2.0 * cones.map_or(1.0, |c| c[k]))),
+                Some(d) => Tip::Radius(match &hypoid {
+                    Some(h) => {
+                        let addendum = (d / 2.0 - g.module * teeth / (2.0 * h.spiral[k].cos())) / h.cones[k].cos();
+                        g.module * teeth / (2.0 * h.speed_factor(k) * helix.cos()) + addendum
+                    }
+                    None => d / (2.0 * cones.map_or(1.0, |c| c[k])),
+                }),
                 None => Tip::Addendum {
                     coefficient: t.addendum.unwrap_or(g.addendum()),
                     alteration: t.tip_alteration.unwrap_or(0.0),
@@ -156,9 +197,11 @@ impl Assembler<'_> {
         let data = PairData {
             module: g.module,
             pressure_angle: g.pressure_angle(),
-            helix: g.helix(),
+            helix,
             double_helical: g.double_helical,
-            width: if bevel { g.width * BEVEL_WIDTH } else { g.width },
+            width: g.width
+                * if bevel { BEVEL_WIDTH } else { 1.0 }
+                * hypoid.as_ref().map_or(1.0, |h| h.width_factor(wheel_of(gears))),
             centre_distance: g.centre_distance,
             wheels: [wheel(0, &gears[0]), wheel(1, &gears[1])],
         };
@@ -217,6 +260,7 @@ impl Assembler<'_> {
         Some(Teeth {
             pair,
             cones,
+            hypoid,
             roughness: roughness.map(|r| r.unwrap_or(ROUGHNESS)),
             immersion: gears.map(|(_, _, t)| t.immersion),
             hand: 0.0,
@@ -235,15 +279,17 @@ impl Assembler<'_> {
         })
     }
 
-    /// `cos δ` of the pitch cones of bevel gears: `tan δ₁ = sin Σ/(z₂/z₁ + cos Σ)`, `δ₂ = Σ − δ₁`. None where they cannot be, or
-    /// where something is said of them that holds for cylindrical gears only.
+    /// The pitch cones of bevel gears: `tan δ₁ = sin Σ/(z₂/z₁ + cos Σ)`, `δ₂ = Σ − δ₁`, or of hypoid gears. None where they cannot
+    /// be, or where something is said of them that holds for cylindrical gears only.
     fn cones(
         &mut self,
         g: &PlainGeometry,
         gears: [(f64, bool, &PlainTooth); 2],
         title: &str,
-        at: &str,
-    ) -> Option<[f64; 2]> {
+        place: &str,
+    ) -> Option<Cones> {
+        let at = format!("{place}.geometry");
+        let helix = self.spiral_angles(g, gears, title, place)?;
         let before = self.diagnostics.len();
         let mut wrong = |code, key: &str, message: String, hint: &str| {
             let d = Diagnostic::new(code, format!("{at}.{key}"), format!("{}: {message}", clip(title)));
@@ -253,7 +299,34 @@ impl Assembler<'_> {
         let (z1, z2) = (gears[0].0, gears[1].0);
         let first = angle.sin().atan2(z2 / z1 + angle.cos());
         let all = [first, angle - first];
-        if !(angle > 0.0 && angle < std::f64::consts::PI && all.iter().all(|d| d.cos() > 0.05)) {
+        let possible = angle > 0.0 && angle < std::f64::consts::PI;
+        let hypoid = match helix[0] == helix[1] {
+            true => None,
+            false if possible && g.module > 0.0 && g.module.is_finite() => {
+                let found = Hypoid::new(g.module, [z1, z2], helix, angle);
+                if found.is_none() {
+                    let message = format!(
+                        "axes at {:.2}° with {z1} and {z2} teeth at spiral angles of {:.2}° and {:.2}°: no pitch cones below 87° touch so",
+                        angle.to_degrees(),
+                        helix[0].to_degrees(),
+                        helix[1].to_degrees()
+                    );
+                    wrong(
+                        Code::ImpossibleGeometry,
+                        "shaft_angle",
+                        message,
+                        "spiral angles that differ less are possible",
+                    );
+                }
+                found
+            }
+            false => None,
+        };
+        if let (Some(_), None, true) = (g.offset.filter(|a| *a != 0.0), &hypoid, helix[0] == helix[1]) {
+            let message = "an offset, but both gears have one spiral angle".into();
+            wrong(Code::Conflict, "offset", message, "give each gear its own `spiral_angle`");
+        }
+        if !(possible && (hypoid.is_some() || all.iter().all(|d| d.cos() > 0.05))) {
             let message = format!(
                 "axes at {:.2}° with {z1} and {z2} teeth give pitch cones of {:.2}° and {:.2}°: both are below 87°",
                 angle.to_degrees(),
@@ -292,12 +365,83 @@ impl Assembler<'_> {
         if self.diagnostics.len() > before {
             return None;
         }
+        if let Some(hypoid) = hypoid {
+            self.hypoid_said(g, &hypoid, title, &at);
+            let factors = [0, 1].map(|k| hypoid.speed_factor(k));
+            return Some(Cones { factors, helix: hypoid.helix(), hypoid: Some(hypoid) });
+        }
         self.assume(
             title,
             "bevel teeth, as the virtual cylindrical pair at the middle of the face width on 85 % of it; their module is the normal one \
              there, and their forces load no bearing",
         );
-        Some(all.map(f64::cos))
+        Some(Cones { factors: all.map(f64::cos), helix: helix[0], hypoid: None })
+    }
+
+    /// The mean spiral angle of each gear of a bevel pair.
+    fn spiral_angles(
+        &mut self,
+        g: &PlainGeometry,
+        gears: [(f64, bool, &PlainTooth); 2],
+        title: &str,
+        place: &str,
+    ) -> Option<[f64; 2]> {
+        let [first, second] = gears.map(|gear| gear.2.spiral_angle);
+        let (Some(first), Some(second)) = (first, second) else {
+            if first.is_some() || second.is_some() {
+                let message = format!("{}: a spiral angle on one gear of the pair only", clip(title));
+                let d = Diagnostic::new(Code::MissingKey, place, message);
+                self.report_once(d.hint("give `spiral_angle` on both gears, or `helix` in the geometry for both"));
+                return None;
+            }
+            return Some([g.helix(); 2]);
+        };
+        if g.helix.is_some() {
+            let message = format!("{}: `helix` beside the spiral angles of both gears", clip(title));
+            self.report_once(
+                Diagnostic::new(Code::Conflict, format!("{place}.geometry.helix"), message).hint("leave it out"),
+            );
+            return None;
+        }
+        for angle in [first, second] {
+            if !(0.0..=MOST_SPIRAL).contains(&angle) {
+                let degrees = angle.to_degrees();
+                let message = format!("{}: a spiral angle of {degrees:.2}°: it is 0 to 80°", clip(title));
+                let hint = "both hands follow from each other; angles have no sign";
+                self.report_once(Diagnostic::new(Code::OutOfRange, place, message).hint(hint));
+                return None;
+            }
+        }
+        Some([first, second])
+    }
+
+    /// What is assumed of a hypoid pair, and whether the offset that is given is its own.
+    fn hypoid_said(&mut self, g: &PlainGeometry, hypoid: &Hypoid, title: &str, at: &str) {
+        let follows = hypoid.offset * 1e3;
+        if let Some(given) = g.offset.map(|a| a * 1e3)
+            && self.positive(given, false, "an offset", "mm", &format!("{at}.offset"))
+            && (given / follows - 1.0).abs() > OFFSET
+        {
+            let [first, second] = hypoid.spiral.map(f64::to_degrees);
+            let message = format!(
+                "{}: an offset of {given:.2} mm, but spiral angles of {first:.2}° and {second:.2}° at this module belong to one of \
+                 {follows:.2} mm",
+                clip(title)
+            );
+            let d = Diagnostic::new(Code::DoubtfulGeometry, format!("{at}.offset"), message);
+            self.report_once(
+                d.hint("`module` is the normal one at the middle of the face width, the angles are those there"),
+            );
+        }
+        self.assume(
+            title,
+            &format!(
+                "hypoid teeth: they slide along each other, which each direction pays for differently, and across each other as \
+                 the virtual cylindrical pair does whose normal section is theirs at the middle of the face width, on 85 % of it; \
+                 both losses as if each were alone, with one coefficient of friction; axes {follows:.1} mm apart; pressure \
+                 angles of both flanks alike; their forces load no bearing"
+            ),
+        );
     }
 
     /// Tip relief of the gears of a pair.
@@ -383,8 +527,12 @@ impl Assembler<'_> {
     /// exact results stay readable.
     pub fn nominal_efficiency(&mut self, teeth: &Teeth) -> Efficiency {
         let loss = self.friction_coefficient * self.laws.loss_factor.eval(&Path::of(&teeth.pair));
-        let eta = Rational::new(((1.0 - loss).clamp(0.01, 1.0) * 1e6).round() as i64, 1_000_000);
-        Efficiency { forward: eta.clone(), backward: eta }
+        let along = teeth.hypoid.as_ref().map_or([1.0; 2], |hypoid| {
+            hypoid.lengthwise_efficiency(teeth.pair.data.pressure_angle, self.friction_coefficient)
+        });
+        let [forward, backward] =
+            along.map(|own| Rational::new((((1.0 - loss) * own).clamp(0.01, 1.0) * 1e6).round() as i64, 1_000_000));
+        Efficiency { forward, backward }
     }
 
     /// Says that an efficiency stands beside teeth that would give one.

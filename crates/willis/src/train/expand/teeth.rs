@@ -20,6 +20,12 @@ pub(super) fn teeth(e: &mut Expansion<'_, '_>, pairs: &[Pair<'_>]) -> Vec<Option
         let geometry = own.or(e.set.geometry.as_ref());
         let gears = [&p.gears[0], &p.gears[1]].map(|g| (g.teeth.to_f64(), g.internal, &g.tooth));
         let title = format!("{}.{}", e.set.name, p.name);
+        if geometry.is_some_and(|g| g.offset.is_some()) && p.bevel {
+            let message =
+                format!("set `{}`: an offset, but the axes of its planets meet that of the set", clip(&e.set.name));
+            let d = Diagnostic::new(Code::Conflict, format!("{}.geometry.offset", e.place), message);
+            e.a.report(d.hint("hypoid gears are pairs: write a [[mesh]] with `kind = \"bevel\"`"));
+        }
         let teeth = geometry.and_then(|g| e.a.tooth_pair(g, gears, p.bevel, &title, &e.place));
         // What a set says holds for its suns, what a gear says for itself. A sun stands first in its pair; a ring
         // stands second, and the planet that stands first has its hand.

@@ -136,6 +136,9 @@ specification! {
         may tip_relief: Option<Length>,
         /// Its length along the path of contact, from the tip.
         may tip_relief_length: Option<Length>,
+        /// Mean spiral angle of a bevel gear, on both gears of the pair. Different ones make a hypoid pair. Default: `helix` of the
+        /// geometry.
+        may spiral_angle: Option<Angle>,
     }
 
     /// Involute teeth of a cylindrical pair, or of all pairs of a set.
@@ -179,6 +182,8 @@ specification! {
         may centre_distance: Option<Length>,
         /// Angle between the axes of bevel gears. Default: 90 deg.
         may shaft_angle: Option<Angle>,
+        /// Distance of the axes of a hypoid pair, to compare with the one that follows from the spiral angles.
+        may offset: Option<Length>,
         /// Addendum coefficient of the basic rack. Default: 1.
         may addendum: Option<f64>,
         /// Dedendum coefficient of the basic rack. Default: 1.25.
