@@ -113,7 +113,10 @@ fn refused(kind: &str) -> Option<&'static str> {
             "bevel_stage: bevel stages are not read yet; Willis has bevel sets, to be written by hand as a set of \
              `type = \"bevel\"`"
         }
-        "hypoid_stage" => "hypoid_stage: hypoid gears are no gears of Willis",
+        "hypoid_stage" => {
+            "hypoid_stage: hypoid stages are not read yet; Willis has hypoid pairs, to be written by hand as a mesh of \
+             `kind = \"bevel\"` with a `spiral_angle` for each gear"
+        }
         "beveloid_stage" => "beveloid_stage: beveloid gears are no gears of Willis",
         _ => return None,
     })

@@ -122,6 +122,8 @@ family! {
     uniform::Uniform,
 }
 
+pub(crate) use equal::Slices;
+
 impl<D: crate::Real> ToothLoad<D> {
     /// Whether the place lies on the path of contact.
     ///

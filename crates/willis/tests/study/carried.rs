@@ -443,6 +443,8 @@ fn no_key_of_the_schema_is_missing_from_the_generated_files() {
         .filter(|key| key != "variator.machines.efficiency.map")
         // Gears of their own geometry are those of stepped sets, which are cylindrical.
         .filter(|key| !["set.suns.geometry.shaft_angle", "set.rings.geometry.shaft_angle"].contains(&key.as_str()))
+        // Hypoid gears are pairs: sets refuse both.
+        .filter(|key| !(key.starts_with("set.") && (key.ends_with(".offset") || key.ends_with(".spiral_angle"))))
         .collect();
     assert!(missing.is_empty(), "add them to a file: {missing:?}");
     assert!(schema_keys().len() > 150, "{}", schema_keys().len());

@@ -435,7 +435,7 @@ impl Assembler<'_> {
         }
         self.assume(
             title,
-            &format!(
+            format!(
                 "hypoid teeth: they slide along each other, which each direction pays for differently, and across each other as \
                  the virtual cylindrical pair does whose normal section is theirs at the middle of the face width, on 85 % of it; \
                  both losses as if each were alone, with one coefficient of friction; axes {follows:.1} mm apart; pressure \
@@ -483,19 +483,16 @@ impl Assembler<'_> {
                 self.report_once(Diagnostic::new(Code::OutOfRange, place, message));
                 continue;
             }
-            if pair.data.helix != 0.0 {
-                let message = format!(
-                    "{}: tip relief of helical teeth (helix angle {:.3}°): its effect on losses is known here for spur teeth only",
-                    clip(title),
-                    pair.data.helix.to_degrees()
-                );
-                self.report_once(Diagnostic::new(Code::OutOfRange, place, message).hint("leave the relief out"));
-                continue;
-            }
             (relief.amount[k], relief.length[k]) = (amount, length);
         }
         if relief.amount == [0.0; 2] {
             return None;
+        }
+        if pair.data.helix != 0.0 {
+            self.assume(
+                title,
+                "tip relief of helical teeth: slices across the face width that do not support each other, amounts in the transverse section",
+            );
         }
         if relief.stiffness.is_none()
             && let Some(how) = pair.beyond_stiffness()

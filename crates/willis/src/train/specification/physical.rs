@@ -132,7 +132,7 @@ specification! {
         may roughness: Option<Length>,
         /// How deep the pitch circle dips into the oil at rest.
         may immersion: Option<Length>,
-        /// Amount of a linear tip relief at the tip, C_a, of spur teeth. Default: none.
+        /// Amount of a linear tip relief at the tip, C_a, in the transverse section. Default: none.
         may tip_relief: Option<Length>,
         /// Its length along the path of contact, from the tip.
         may tip_relief_length: Option<Length>,
