@@ -31,6 +31,7 @@
 //! ```
 
 mod account;
+pub mod c;
 mod document;
 mod json;
 pub mod rexs;
