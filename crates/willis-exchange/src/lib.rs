@@ -33,6 +33,7 @@
 mod account;
 pub mod c;
 mod document;
+pub mod gearsets;
 mod json;
 pub mod rexs;
 mod text;
