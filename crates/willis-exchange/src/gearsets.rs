@@ -174,7 +174,11 @@ impl Reader {
         own
     }
 
-    fn train(&mut self, spec: &Map<String, Value>, schedule: Option<&Map<String, Value>>) -> Result<String, Diagnostics> {
+    fn train(
+        &mut self,
+        spec: &Map<String, Value>,
+        schedule: Option<&Map<String, Value>>,
+    ) -> Result<String, Diagnostics> {
         // Ties first: what is tied is one member.
         let mut tied: Vec<Vec<String>> = vec![];
         for (k, tie) in self.list(spec, "permanent_ties").into_iter().enumerate() {
@@ -208,7 +212,8 @@ impl Reader {
         let gearsets = self.list(spec, "gearsets");
         for (k, set) in gearsets.iter().enumerate() {
             let called = name(text(set, "name").unwrap_or(""), &format!("P{}", k + 1), &mut set_names);
-            let teeth = ["Ns", "Nr"].map(|key| set.get(key).and_then(Value::as_u64).filter(|n| (1..100_000).contains(n)));
+            let teeth =
+                ["Ns", "Nr"].map(|key| set.get(key).and_then(Value::as_u64).filter(|n| (1..100_000).contains(n)));
             let parts = ["sun", "ring", "carrier"].map(|key| text(set, key).map(str::to_owned));
             let ([Some(ns), Some(nr)], [Some(sun), Some(ring), Some(carrier)]) = (teeth, parts) else {
                 self.problem(format!("gear set {called}"), "it lacks Ns, Nr, sun, ring or carrier and is left out");
@@ -216,11 +221,17 @@ impl Reader {
             };
             let [sun, ring, carrier] = [sun, ring, carrier].map(|m| self.member(&m));
             if ns >= nr {
-                self.problem(format!("gear set {called}"), format!("a ring of {nr} teeth has no room for a sun of {ns}; it is left out"));
+                self.problem(
+                    format!("gear set {called}"),
+                    format!("a ring of {nr} teeth has no room for a sun of {ns}; it is left out"),
+                );
                 continue;
             }
             if (nr - ns) % 2 == 1 {
-                let told = format!("Ns = {ns} and Nr = {nr} leave {} teeth for a planet: a nominal one", (nr - ns) as f64 / 2.0);
+                let told = format!(
+                    "Ns = {ns} and Nr = {nr} leave {} teeth for a planet: a nominal one",
+                    (nr - ns) as f64 / 2.0
+                );
                 self.problem(format!("gear set {called}"), told);
             }
             self.components += 1;
@@ -369,7 +380,8 @@ impl Reader {
 
     /// Every value of the file, used or left out.
     fn account(&mut self, of: &Map<String, Value>, used: &Used) {
-        let is_used = |kind: &str, key: &str| used.iter().any(|u| u.0 == kind && (u.1.is_empty() || u.1.contains(&key)));
+        let is_used =
+            |kind: &str, key: &str| used.iter().any(|u| u.0 == kind && (u.1.is_empty() || u.1.contains(&key)));
         for (key, value) in of {
             let listed = used.iter().any(|u| u.0 == key && !key.is_empty());
             match value {
