@@ -316,8 +316,8 @@ impl Reader {
     /// What a sprag is here: a one-way clutch, or a brake where it holds both ways.
     fn sprag(&mut self, place: &str, direction: &str) -> (&'static str, Option<&'static str>) {
         match direction.to_ascii_lowercase().as_str() {
-            "negative" | "ccw" | "counter_clockwise" | "reverse" => ("one-way", Some("negative")),
-            "positive" | "cw" | "clockwise" | "forward" => ("one-way", Some("positive")),
+            "negative" | "ccw" | "counter_clockwise" | "reverse" => ("one-way", Some("backward")),
+            "positive" | "cw" | "clockwise" | "forward" => ("one-way", Some("forward")),
             other => {
                 self.guessed.push(Guess {
                     of: place.to_owned(),
