@@ -31,7 +31,9 @@
 //! ```
 
 mod account;
+pub mod c;
 mod document;
+pub mod gearsets;
 mod json;
 pub mod rexs;
 mod text;

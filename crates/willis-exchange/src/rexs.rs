@@ -75,6 +75,9 @@ pub struct Missing {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Report {
+    /// The format: `REXS` or `gearsets`.
+    #[serde(default)]
+    pub kind: String,
     /// The version that the file says it has.
     pub version: String,
     /// The program that wrote it.
@@ -294,6 +297,7 @@ fn train(name: &str, document: &Document, convention: Convention) -> Result<Impo
         ideal_supports: ideal,
     };
     let mut report = Report {
+        kind: "REXS".into(),
         version: printable(&document.version).into_owned(),
         application: printable(&document.application).into_owned(),
         counts,

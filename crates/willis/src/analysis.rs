@@ -42,6 +42,7 @@ pub use crate::power_flow::{BeyondLimit, LimitedQuantity};
 pub use why::{TorqueRange, Why};
 
 pub use crate::named::Named;
+pub use in_force::frozen;
 pub(crate) use in_force::in_force;
 pub(crate) use operation::Point;
 pub(crate) use unit::UnitPoint;

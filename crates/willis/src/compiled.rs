@@ -29,17 +29,19 @@ mod parts;
 mod passes;
 mod iterated;
 mod kernel;
+mod tables;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Element};
 use crate::power_flow;
-use crate::train::{MemberId, MeshId, ShiftElementId, Train};
+use crate::train::{FRAME, MemberId, MeshId, ShiftElementId, Train};
 
 use kernel::{Chunk, General, Single};
 use parts::{CHUNK, Law, MOST_FEATURES, MOST_LINEAR, MOST_MOVING, Target};
 
 pub use duty::{Duty, Output, PointVerdict, Points, PowerLoss, ShaftDrag};
+pub use tables::{TableElement, TableMesh, TableOutput, Tables};
 
 /// A train ready to be evaluated at many points.
 #[derive(Clone, Debug)]
@@ -115,6 +117,8 @@ struct Compiler<'t> {
     speeds: Vec<MemberId>,
     torques: Vec<MemberId>,
     drag: Vec<(MemberId, ShaftDrag)>,
+    /// Torques that act on the first member and against the second.
+    between: Vec<[MemberId; 2]>,
     /// By element.
     laws: Vec<Option<Law>>,
     outputs: Vec<Output>,
@@ -168,11 +172,13 @@ impl<'t> Compiler<'t> {
         // A mesh with a law of its own is no part of a chain.
         let alone = duty.losses.iter().filter_map(|(name, _)| train.mesh(name));
         let alone = alone.flat_map(|m| train.meshes[m.0].gears.iter().map(|g| g.member));
-        let keep: Vec<MemberId> = speeds.iter().chain(&dragged).copied().chain(alone).collect();
+        let between = duty.between.clone();
+        let keep = speeds.iter().chain(&dragged).chain(between.iter().flatten()).copied().chain(alone);
+        let keep: Vec<MemberId> = keep.collect();
         let c = Configuration::new(train, engaged, &fixed, &keep);
         let drag = dragged.into_iter().zip(duty.drag.iter().map(|d| d.1)).collect();
         let laws = vec![None; c.elements.len()];
-        let mut compiler = Self { train, c, speeds, torques, drag, laws, outputs: duty.outputs.clone() };
+        let mut compiler = Self { train, c, speeds, torques, drag, between, laws, outputs: duty.outputs.clone() };
         duty.losses.iter().try_for_each(|(name, law)| compiler.law(name, law))?;
         Ok(compiler)
     }
@@ -257,6 +263,7 @@ impl<'t> Compiler<'t> {
         }
         let mut loaded: Vec<usize> = self.torques.iter().filter_map(|t| c.node(*t)).collect();
         loaded.extend(self.drag.iter().filter_map(|(m, _)| c.node(*m)));
+        loaded.extend(self.between.iter().flatten().filter_map(|m| c.node(*m)));
         let open_nodes: Vec<usize> = open.iter().map(|o| o.1).collect();
         // Generic directions of motion: an element at rest whatever the speeds stays at rest.
         let relative: Vec<Option<Vec<f64>>> = c
@@ -331,7 +338,7 @@ impl<'t> Compiler<'t> {
             });
             drag_of.push((*m, index, sign, row, *drag));
         }
-        let features = l + d + coulomb.len();
+        let features = l + d + coulomb.len() + self.between.len();
         if features > MOST_FEATURES {
             return Err(fail(Code::TooLarge, format!("{features} independent inputs"), "prescribe fewer"));
         }
@@ -345,6 +352,13 @@ impl<'t> Compiler<'t> {
             external[l + d + index][m.0] -= drag.coulomb * sign;
             for (i, w) in row.iter().enumerate() {
                 external[l + i][m.0] -= drag.viscous * w;
+            }
+        }
+        for (i, [a, b]) in self.between.iter().enumerate() {
+            for (m, x) in [(a, 1.0), (b, -1.0)] {
+                if *m != FRAME {
+                    external[features - self.between.len() + i][m.0] += x;
+                }
             }
         }
         let load = |feature: usize, node: usize| -> f64 {
@@ -404,6 +418,7 @@ impl<'t> Compiler<'t> {
                     entries: col.entries.clone(),
                     arm: c.elements[col.element].a.to_f64().abs(),
                     law: self.laws[col.element],
+                    meshes: self.shares(&c.elements[col.element]),
                 })
                 .collect(),
             right,
@@ -428,6 +443,27 @@ impl<'t> Compiler<'t> {
         })
     }
 
+    /// What each mesh of an element loses, over the power at its end p: where p drives, and where q does.
+    fn shares(&self, e: &Element) -> Vec<(MeshId, [f64; 2])> {
+        let eta = |l: &crate::kinematics::Link, forward: bool| {
+            let own = &self.c.efficiencies[l.mesh.0];
+            if l.along == forward { own.forward.to_f64() } else { own.backward.to_f64() }
+        };
+        let mut all: Vec<(MeshId, [f64; 2])> = e.links.iter().map(|l| (l.mesh, [0.0; 2])).collect();
+        let mut left = 1.0;
+        for (l, share) in e.links.iter().zip(&mut all) {
+            share.1[0] = left * (1.0 - eta(l, true));
+            left *= eta(l, true);
+        }
+        // What leaves at p is what entered at q times the efficiency.
+        let mut left = -e.backward.recip().to_f64();
+        for (l, share) in e.links.iter().zip(&mut all).rev() {
+            share.1[1] = left * (1.0 - eta(l, false));
+            left *= eta(l, false);
+        }
+        all
+    }
+
     /// The fused kernel for one set with two freedoms, if this duty is of that kind.
     fn single(
         &self,
@@ -436,7 +472,7 @@ impl<'t> Compiler<'t> {
         drag: &[(MemberId, usize, f64, Vec<f64>, ShaftDrag)],
         columns: &[Column],
     ) -> Option<Single> {
-        if self.laws.iter().any(Option::is_some) {
+        if self.laws.iter().any(Option::is_some) || !self.between.is_empty() {
             return None;
         }
         let [loaded] = self.torques[..] else { return None };

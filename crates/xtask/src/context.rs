@@ -20,6 +20,8 @@ pub(crate) struct Options {
     pub(crate) modelica: Option<PathBuf>,
     /// Whether the program is built from nothing and timed.
     pub(crate) build: bool,
+    /// Whether simulators are timed.
+    pub(crate) speed: bool,
     /// A studio that is built, for the site.
     pub(crate) studio: Option<PathBuf>,
     /// Whether the site does without the pages of the library.

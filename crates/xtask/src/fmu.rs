@@ -1,4 +1,4 @@
-//! FMUs in the hands of simulators that others wrote: FMPy and libcosim, in an environment of their own.
+//! FMUs in the hands of simulators that others wrote: FMPy, libcosim and Ecos, in an environment of their own.
 
 use std::process::Command;
 
@@ -8,7 +8,7 @@ use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// The simulators, and what runs the tests.
-const TOOLS: &str = "fmpy>=0.3.20 libcosimpy pytest";
+const TOOLS: &str = "fmpy>=0.3.20 libcosimpy ecospy tbb pytest";
 
 /// The tests.
 const TESTS: &str = "crates/willis-fmu/tests/hosts.py";

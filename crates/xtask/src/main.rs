@@ -8,6 +8,7 @@ mod book;
 mod context;
 mod environment;
 mod examples;
+mod exports;
 mod fmu;
 mod fuzz;
 mod generate;
@@ -98,6 +99,12 @@ const TASKS: &[Step] = &[
         Action::Call(site::site),
     )
     .may_skip(),
+    Step::new(
+        "exports",
+        "exported actuators loaded and moved in MuJoCo and Drake, units and equations in FMPy and rumoca; [--speed] how fast each is",
+        Action::Call(exports::exports),
+    )
+    .may_skip(),
     Step::new("bench", "benchmarks of the library", Action::Call(bench::bench)),
     Step::new(
         "measure",
@@ -150,6 +157,10 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
             }
             ("site", "--no-api", more) => {
                 options.no_api = true;
+                more
+            }
+            ("exports", "--speed", more) => {
+                options.speed = true;
                 more
             }
             ("measure", "--build", more) => {

@@ -144,7 +144,7 @@ impl Question for Export {
         };
         let kinds = KINDS.iter().map(|k| (k.id, k.about));
         #[cfg(feature = "import")]
-        let kinds = kinds.chain([REXS]);
+        let kinds = kinds.chain(willis_exchange::c::KINDS).chain([REXS]);
         let kind = match (self.kind.as_deref().filter(|k| *k != "list"), of) {
             (Some(kind), [_]) => kind,
             (Some(kind), _) => {
@@ -173,7 +173,13 @@ impl Question for Export {
         };
         work.afford(&effort(&of[0].model))?;
         #[cfg(feature = "import")]
-        let done = if kind == REXS.0 { rexs(&of[0].model, &request) } else { export(&of[0].model, kind, &request) }?;
+        let done = match kind {
+            _ if kind == REXS.0 => rexs(&of[0].model, &request),
+            _ if willis_exchange::c::KINDS.iter().any(|k| k.0 == kind) => {
+                willis_exchange::c::write(&of[0].model, kind, &request)
+            }
+            _ => export(&of[0].model, kind, &request),
+        }?;
         #[cfg(not(feature = "import"))]
         let done = export(&of[0].model, kind, &request)?;
         let file = |f: willis::study::export::ExportedFile| OneFile { name: f.name, about: f.about, text: f.text };

@@ -8,18 +8,22 @@ use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic};
 use willis::work::Work;
+use willis_exchange::gearsets;
 use willis_exchange::rexs::{self, Convention, Report};
 
 use crate::style::wrap;
 use crate::table::{Table, csv};
 use crate::{Attachment, Extra, File, Form, Given, Holds, Of, Question, Refusal};
 
-/// Read a gearbox of another program: a REXS file becomes a train file.
+/// Read a gearbox of another program: a REXS file, or gearsets JSON, becomes a train file.
 ///
 /// REXS 1.0 to 1.6, as XML (.rexs), JSON (.rexsj) or zip (.rexsz): cylindrical and planetary stages, gears with their
 /// geometry, bearings, lubricant, shift elements and load cases. The train file begins with what was assumed and what is
 /// missing; as text the answer is an account of every attribute: used, left out or unusable. A broken file is
 /// read as far as it goes. Worm and bevel stages are refused.
+///
+/// Gearsets JSON describes an automatic transmission: sets with Ns and Nr, clutches, brakes, sprags; its shift schedule
+/// stands in a file of its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -31,6 +35,9 @@ pub struct Import {
     /// din.
     #[cfg_attr(feature = "clap", arg(long, value_name = "SIGN"))]
     pub convention: Option<String>,
+    /// The shift schedule that belongs to a transmission spec of gearsets JSON.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE"))]
+    pub schedule: Option<Attachment>,
 }
 
 /// A train file, and what became of the file that it was made from.
@@ -89,7 +96,25 @@ impl Question for Import {
             let d = Diagnostic::new(Code::Unreadable, "", format!("the file cannot be read: {why}"));
             refused(d.into())
         })?;
-        let read = rexs::read_as(&file.name, &bytes, convention).map_err(refused)?;
+        let read = if gearsets::is_gearsets(&bytes) {
+            if self.convention.is_some() {
+                let d = Diagnostic::new(Code::Conflict, "convention", "gearsets JSON has no profile shifts");
+                return Err(d.hint("leave out the sign of profile shifts").into());
+            }
+            let schedule = self.schedule.as_ref().map(|s| {
+                s.bytes().map_err(|why| {
+                    let d = Diagnostic::new(Code::Unreadable, "", format!("the schedule cannot be read: {why}"));
+                    Refusal::File(d.into(), Attachment::from(s.name.as_str()))
+                })
+            });
+            let schedule = schedule.transpose()?;
+            gearsets::read(&file.name, &bytes, schedule.as_deref()).map_err(refused)?
+        } else if self.schedule.is_some() {
+            let d = Diagnostic::new(Code::Conflict, "schedule", "a shift schedule belongs to gearsets JSON only");
+            return Err(d.hint("leave out the schedule, or name a transmission spec").into());
+        } else {
+            rexs::read_as(&file.name, &bytes, convention).map_err(refused)?
+        };
         Ok(ImportAnswer { format: Format::new(), file: file.name.clone(), toml: read.toml, report: read.report })
     }
 
@@ -130,6 +155,6 @@ impl Question for Import {
     }
 
     fn attachments(&mut self) -> Vec<(&mut Attachment, Holds)> {
-        self.file.iter_mut().map(|f| (f, Holds::Exchange)).collect()
+        self.file.iter_mut().chain(&mut self.schedule).map(|f| (f, Holds::Exchange)).collect()
     }
 }

@@ -15,7 +15,7 @@ pub fn figures() -> Vec<&'static str> {
 pub fn exports() -> Vec<&'static str> {
     let kinds = willis::study::export::KINDS.iter().map(|k| k.id);
     #[cfg(feature = "import")]
-    let kinds = kinds.chain(["rexs"]);
+    let kinds = kinds.chain(willis_exchange::c::KINDS.map(|k| k.0)).chain(["rexs"]);
     kinds.chain(["list"]).collect()
 }
 

@@ -19,6 +19,32 @@ pub(crate) fn in_force(train: &Train, operation: &Operation) -> Option<(Vec<Effi
     Some((all.collect(), settled.report))
 }
 
+/// The train with the mesh efficiencies that its laws give in the only equilibrium of an operation, as given ones; `None`
+/// where there is no such equilibrium. Drags that are given as torques stay; what else is computed from the load is gone.
+///
+/// # Example
+/// ```
+/// use willis::train::{Operation, SetSpec, Train};
+/// use willis::units::{AngularSpeed, Torque};
+///
+/// let train = Train::builder("reducer")
+///     .members(["s", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+///     .build()?;
+/// let sun = train.member("s").unwrap();
+/// let point = Operation::new("20 N m").speed(sun, AngularSpeed::rpm(1000.0)).load(sun, Torque::n_m(20.0));
+/// let frozen = willis::analysis::frozen(&train, &point).unwrap();
+/// assert_eq!(frozen.meshes()[0].efficiency, train.meshes()[0].efficiency);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn frozen(train: &Train, operation: &Operation) -> Option<Train> {
+    let (all, _) = in_force(train, operation)?;
+    let mut own = Train { drags: train.drags.clone(), ..train.without_laws() };
+    own.meshes.iter_mut().zip(all).for_each(|(mesh, efficiency)| mesh.efficiency = efficiency);
+    Some(own)
+}
+
 fn rounded(eta: &Rational) -> Rational {
     Rational::new((eta.to_f64().clamp(0.01, 1.0) * 1e6).round() as i64, 1_000_000)
 }

@@ -1,5 +1,7 @@
 //! What is prescribed at every point, what is wanted there, and how many equilibria it has.
 
+use crate::train::MemberId;
+
 /// Drag of a shaft against the housing: `−coulomb · sign(ω) − viscous · ω`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShaftDrag {
@@ -114,6 +116,7 @@ pub struct Duty {
     pub(super) speeds: Vec<String>,
     pub(super) torques: Vec<String>,
     pub(super) drag: Vec<(String, ShaftDrag)>,
+    pub(super) between: Vec<[MemberId; 2]>,
     pub(super) losses: Vec<(String, PowerLoss)>,
     pub(super) outputs: Vec<Output>,
 }

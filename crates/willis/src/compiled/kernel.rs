@@ -92,7 +92,7 @@ impl General {
     pub fn new(p: Parts, regular: &dyn Fn(&[[f64; 2]]) -> bool) -> Self {
         let k = p.columns.len();
         assert!(k <= MOST_ELEMENTS && p.linear <= MOST_LINEAR, "bounded by the limits of a train");
-        let features = p.torques + p.speeds + p.signs.len();
+        let features = p.right.len();
         let moving: Vec<usize> = (0..k)
             .filter(|&j| p.columns[j].rho[0] != p.columns[j].rho[1] && p.columns[j].relative.iter().any(|x| *x != 0.0))
             .collect();
@@ -113,12 +113,17 @@ impl General {
                 g.p.columns[j].entries.iter().filter(|e| e.0 == r).map(|e| e.1 + e.2 * rho[j]).sum()
             });
             let right = nalgebra::DMatrix::from_fn(k, features, |r, i| g.p.right[i][r]);
-            let lu = matrix.clone().lu();
-            let solved = lu.solve(&right).and_then(|x| {
-                // One step of refinement: the table serves millions of points.
-                let correction = lu.solve(&(&right - &matrix * &x))?;
-                Some(x + correction)
-            });
+            let solved = if k == 0 {
+                // Everything turns as one: there is nothing to solve, and the library has no systems without unknowns.
+                Some(right)
+            } else {
+                let lu = matrix.clone().lu();
+                lu.solve(&right).and_then(|x| {
+                    // One step of refinement: the table serves millions of points.
+                    let correction = lu.solve(&(&right - &matrix * &x))?;
+                    Some(x + correction)
+                })
+            };
             let Some(all) = solved else {
                 g.forces.push(None);
                 g.table.push(vec![vec![f64::NAN; features]; g.p.linear]);
@@ -139,6 +144,11 @@ impl General {
             g.table.push(table);
         }
         g
+    }
+
+    /// What it was made of.
+    pub fn parts(&self) -> &Parts {
+        &self.p
     }
 
     pub fn certified(&self) -> bool {

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::train::MeshId;
+
 /// Most elements with relative motion for which all sign patterns are kept.
 pub(super) const MOST_MOVING: usize = 12;
 /// Most quantities that torques may depend on.
@@ -62,6 +64,8 @@ pub(super) struct Element {
     pub arm: f64,
     /// A loss that depends on load and speed; `rho` are then the bounds of its slopes.
     pub law: Option<Law>,
+    /// What each mesh in it loses, over the power at end p: where p drives, and where q does.
+    pub meshes: Vec<(MeshId, [f64; 2])>,
 }
 
 /// What the compiler hands over.

@@ -10,8 +10,8 @@ use crate::style::{bold, plural, wrap};
 pub fn sums(r: &Report) -> String {
     let c = &r.counts;
     format!(
-        "REXS {}, {}: {} of {} attributes used, {} left out, {} unusable; {}, {}",
-        r.version,
+        "{}, {}: {} of {} attributes used, {} left out, {} unusable; {}, {}",
+        format!("{} {}", r.kind, r.version).trim(),
         plural(c.components, "component", "components"),
         c.used,
         c.attributes,

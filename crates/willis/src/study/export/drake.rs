@@ -12,7 +12,7 @@ use crate::train::Train;
 
 use super::map::Gear;
 use super::mujoco::both;
-use super::names::{file, number, slug, xml};
+use super::names::{file, number, percent, slug, xml};
 use super::single::single;
 use super::{Asked, Export, ExportedFile, each, origin, told};
 
@@ -34,6 +34,16 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
         gear.title(),
         gear.output
     ));
+    if let (Some(f), Some(b)) = (found.drive, found.coast) {
+        own.push(format!(
+            "{}: run in Drake 1.51: with t*gear_ratio alone the joint gets {} too much torque where the motor drives, and {} too \
+             little where it is driven back; with both efficiencies it gets that of Willis, except that the rotor's own torque \
+             passes no teeth there",
+            gear.title(),
+            percent(1.0 / f - 1.0),
+            percent(1.0 - b)
+        ));
+    }
     let inertia = gear.inertia_at_output().map(|j| j / (gear.ratio * gear.ratio));
     let rotor = inertia.as_ref().ok().copied();
     own.push(match &inertia {

@@ -50,6 +50,14 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
         let [drive, coast] = [1.0 - f, 1.0 / b - 1.0];
         data.push((format!("{name}/mu_avg"), (drive + coast) / 2.0));
         data.push((format!("{name}/mu_dif"), (drive - coast) / 2.0));
+        own.push(format!(
+            "{}: run in MuJoCo 4.0.0: without the user data the joint gets {} too much torque where the motor drives, and {} too \
+             little where it is driven back; with force - mu_avg*|force|*z - mu_dif*force as the control, z = 1 or -1 with the \
+             sign of the actuator's velocity, it gets that of Willis, except that the armature's own torque passes no teeth there",
+            gear.title(),
+            percent(1.0 / f - 1.0),
+            percent(1.0 - b)
+        ));
     } else if found.drive.is_some() {
         own.push(format!(
             "{}: {} cannot drive {}, but MuJoCo's joint would drive the motor",
