@@ -6,6 +6,7 @@
 mod bench;
 mod book;
 mod context;
+mod dist;
 mod environment;
 mod examples;
 mod fmu;
@@ -98,6 +99,12 @@ const TASKS: &[Step] = &[
         Action::Call(site::site),
     )
     .may_skip(),
+    Step::new(
+        "dist",
+        "the release: program, wheel, studio, site, licences and checksums, installed where nothing else is; [--profile PROFILE] \
+         [--program FILE] [--wheel FILE] [--studio FILE] built before, [--no-python] [--no-studio] [--no-site] [--no-api]",
+        Action::Call(dist::dist),
+    ),
     Step::new("bench", "benchmarks of the library", Action::Call(bench::bench)),
     Step::new(
         "measure",
@@ -144,11 +151,35 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
                 options.modelica = Some(std::path::absolute(folder).ok()?);
                 more
             }
-            ("site", "--studio", [file, more @ ..]) => {
+            ("site" | "dist", "--studio", [file, more @ ..]) => {
                 options.studio = Some(std::path::absolute(file).ok()?);
                 more
             }
-            ("site", "--no-api", more) => {
+            ("dist", "--program", [file, more @ ..]) => {
+                options.program = Some(std::path::absolute(file).ok()?);
+                more
+            }
+            ("dist", "--wheel", [file, more @ ..]) => {
+                options.wheel = Some(std::path::absolute(file).ok()?);
+                more
+            }
+            ("dist", "--profile", [name, more @ ..]) => {
+                options.profile = Some(name.clone());
+                more
+            }
+            ("dist", "--no-python", more) => {
+                options.no_python = true;
+                more
+            }
+            ("dist", "--no-studio", more) => {
+                options.no_studio = true;
+                more
+            }
+            ("dist", "--no-site", more) => {
+                options.no_site = true;
+                more
+            }
+            ("site" | "dist", "--no-api", more) => {
                 options.no_api = true;
                 more
             }
