@@ -81,7 +81,7 @@ const STEPS: &[Step] = &[
 /// Tasks that are no steps of `ci`, but are shown like steps.
 const TASKS: &[Step] = &[
     Step::new("generate", "write the generated files", Action::Call(generate::generate)),
-    Step::new("reference", "of the generated files the reference pages of the book only", Action::Call(reference::reference)),
+    Step::new("reference", "of the generated files the reference pages of the book only; [--program FILE] one that is built", Action::Call(reference::reference)),
     Step::new(
         "validate",
         "write the validation pages, then compare every number of others with ours; [--modelica FOLDER] whole trajectories",
@@ -95,7 +95,7 @@ const TASKS: &[Step] = &[
     .may_skip(),
     Step::new(
         "site",
-        "book, gallery, validation pages, studio and references as one folder of pages; [--studio FILE] one that is built; [--no-api]",
+        "book, gallery, validation pages, studio and references as one folder of pages; [--studio FILE] [--program FILE] built before; [--no-api]",
         Action::Call(site::site),
     )
     .may_skip(),
@@ -155,7 +155,7 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
                 options.studio = Some(std::path::absolute(file).ok()?);
                 more
             }
-            ("dist", "--program", [file, more @ ..]) => {
+            ("dist" | "reference" | "site", "--program", [file, more @ ..]) => {
                 options.program = Some(std::path::absolute(file).ok()?);
                 more
             }

@@ -448,13 +448,21 @@ const STYLE: &str = "
 .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(15em, 1fr)); gap: 1.5em; }
 .gallery img { width: 100%; height: 11em; object-fit: contain; object-position: left bottom; }
 .content img { max-width: 100%; }
+html.navy, html.coal, html.ayu { --links: #6db8e3; --sidebar-active: #6db8e3; }
 .content thead:not(:has(th:not(:empty))) { display: none; }
 .content table { display: block; overflow-x: auto; }
 @media (max-width: 600px) { .menu-title { display: none; } #find { width: 34vw; } }
 ";
 
-/// A search over headings and texts. The index is a script, because a page from a folder may not fetch a file.
+/// A search over headings and texts, and pictures that open alone, where a phone shows them too small. The index is a script,
+/// because a page from a folder may not fetch a file.
 const SEARCH: &str = r##""use strict";
+for (const picture of document.querySelectorAll(".content img")) {
+  if (picture.closest("a")) continue;
+  const link = Object.assign(document.createElement("a"), { href: picture.src, title: "This picture alone, to enlarge it" });
+  picture.replaceWith(link);
+  link.append(picture);
+}
 (() => {
   const bar = document.querySelector(".right-buttons");
   const index = window.willisIndex;
