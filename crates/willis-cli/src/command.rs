@@ -8,7 +8,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use willis_ask::{Entry, Of, QUESTIONS};
 
 use crate::form::forms;
-use crate::tools;
+use crate::{examples, tools, topics};
 
 /// The whole command line.
 pub fn command() -> Command {
@@ -22,10 +22,11 @@ pub fn command() -> Command {
     let mut all = Command::new("willis")
         .version(env!("CARGO_PKG_VERSION"))
         .about(
-            "Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that the \
-             answer is the only one",
+            "Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with a proof of uniqueness where \
+             there is one",
         )
-        .after_help("`willis FILE` is short for `willis analyze FILE`.")
+        .after_help(format!("`willis FILE` is short for `willis analyze FILE`.\n\n{}", topics::list()))
+        .disable_help_subcommand(true)
         .max_term_width(100)
         .subcommand_required(true)
         .arg_required_else_help(true)
@@ -37,7 +38,14 @@ pub fn command() -> Command {
             all = all.subcommands(tools::TOOLS.iter().filter(|t| t.name == "merge").map(|t| (t.command)()));
         }
     }
-    all.subcommands(tools::TOOLS.iter().filter(|t| t.name != "merge").map(|t| (t.command)()))
+    all.subcommands(tools::TOOLS.iter().filter(|t| t.name != "merge").map(|t| (t.command)())).mut_subcommands(shown)
+}
+
+/// A command whose help ends with an example.
+fn shown(command: Command) -> Command {
+    let Some(example) = examples::example(command.get_name()) else { return command };
+    let more = command.get_after_help().map_or(String::new(), |more| format!("{more}\n\n"));
+    command.after_help(format!("{more}{example}"))
 }
 
 /// What was said on the command line; a file name alone is analysed.
@@ -48,7 +56,7 @@ pub fn matches(words: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, 
     let first = (1..words.len()).find(|&k| !words[k].to_string_lossy().starts_with("--") && !is_value(k));
     if let Some(k) = first {
         let word = words[k].to_string_lossy();
-        let known = command.get_subcommands().any(|c| c.get_name() == word) || word == "help" || word.starts_with('-');
+        let known = command.get_subcommands().any(|c| c.get_name() == word) || word.starts_with('-');
         let file = word == "-" || word.ends_with(".toml") || std::path::Path::new(&words[k]).is_file();
         if file && (!known || word == "-") {
             words.insert(k, "analyze".into());

@@ -4,6 +4,7 @@
 //! A library, so that the Python package has the same command and reads the same files.
 
 mod command;
+mod examples;
 mod fmu;
 mod form;
 pub mod input;
@@ -17,6 +18,7 @@ mod simulate;
 mod studio;
 mod sweep;
 mod tools;
+mod topics;
 pub mod work;
 
 use std::ffi::OsString;

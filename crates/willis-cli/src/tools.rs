@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use willis_ask::{File, QUESTIONS, RefusalReport};
 
 use crate::run::deliver;
-use crate::{Ended, studio, sweep};
+use crate::{Ended, studio, sweep, topics};
 
 /// A command that asks no question.
 pub struct Tool {
@@ -23,6 +23,7 @@ pub const TOOLS: &[Tool] = &[
     Tool { name: "schema", command: schema_command, run: schema },
     Tool { name: "completions", command: completions_command, run: completions },
     Tool { name: "man", command: man_command, run: man },
+    Tool { name: "help", command: topics::command, run: topics::run },
 ];
 
 fn schema_command() -> Command {
@@ -105,7 +106,7 @@ fn man(matches: &ArgMatches, whole: Command) -> Result<Ended, Ended> {
         man.render(&mut bytes).expect("writing to memory");
         File { name: man.get_filename(), bytes, about: String::new() }
     };
-    let mut whole = whole.disable_help_subcommand(true);
+    let mut whole = whole;
     whole.build();
     let Some(folder) = matches.get_one::<PathBuf>("folder") else {
         return Ok(Ended::Answered(String::from_utf8(page(&whole).bytes).expect("pages are text")));

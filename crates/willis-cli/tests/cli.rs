@@ -1705,3 +1705,101 @@ fn wrong_questions_about_variants_are_refused() {
         assert!(told.contains(expected), "{arguments:?}: {told}");
     }
 }
+
+// ---- help ------------------------------------------------------------------------------------
+
+/// Names below `Commands:`.
+fn commands() -> Vec<String> {
+    let help = answered(&["help"]);
+    let lines = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
+    let named = lines.filter(|l| l.starts_with("  ") && !l.starts_with("   "));
+    named.map(|l| l.split_whitespace().next().expect("a name").to_owned()).collect()
+}
+
+/// Words as a shell would split them, up to what it would do with the output.
+fn words(line: &str) -> Vec<String> {
+    let pieces = line.split('"').enumerate();
+    let mut all: Vec<String> = vec![];
+    for (k, piece) in pieces {
+        match k % 2 {
+            1 => all.push(piece.to_owned()),
+            _ => all.extend(piece.split_whitespace().map(str::to_owned)),
+        }
+    }
+    let end = all.iter().position(|w| w == ">").unwrap_or(all.len());
+    all.truncate(end);
+    all
+}
+
+/// A folder with the examples, where a reader begins.
+fn reader(name: &str) -> PathBuf {
+    fn copied(from: &Path, to: &Path) {
+        std::fs::create_dir_all(to).expect("a folder");
+        for entry in std::fs::read_dir(from).expect("a folder").flatten() {
+            let to = to.join(entry.file_name());
+            if entry.path().is_dir() {
+                copied(&entry.path(), &to);
+            } else {
+                std::fs::copy(entry.path(), to).expect("a copy");
+            }
+        }
+    }
+    let folder = folder(name);
+    copied(&root().join("examples"), &folder.join("examples"));
+    folder
+}
+
+/// Runs a line of a help text.
+fn answers(line: &str, folder: &Path) {
+    let words = words(line);
+    let mut c = command(&words[1..].iter().map(String::as_str).collect::<Vec<_>>());
+    let output = c.current_dir(folder).output().expect("the binary runs");
+    assert_eq!(output.status.code(), Some(0), "{line}: {}", text(&output.stderr));
+}
+
+#[test]
+fn every_help_has_an_example_that_is_a_command() {
+    let commands = commands();
+    assert!(commands.len() > 30, "{commands:?}");
+    let folder = reader("help");
+    for name in &commands {
+        let help = answered(&[name, "--help"]);
+        assert!(answered(&["help", name]).starts_with(&help), "{name}");
+        assert_eq!(help.matches("\nExample:").count(), 1, "{name}: {help}");
+        let shown = help.split("\nExample:").nth(1).and_then(|e| e.split_once('\n')).expect("lines").1;
+        let line = shown.trim().replace("\\\n", "");
+        assert!(line.starts_with(&format!("willis {name} ")) && !line.contains('\n'), "{name}: {line}");
+        // The studio would wait for Ctrl-C, and shards are not there.
+        if !["studio", "merge"].contains(&name.as_str()) {
+            answers(&line, &folder);
+        }
+    }
+}
+
+#[test]
+fn topics_are_listed_found_and_have_examples() {
+    let help = answered(&["help"]);
+    let topics = help.split("Topics of `willis help TOPIC`: ").nth(1).and_then(|t| t.split("\n\n").next()).unwrap();
+    let topics: Vec<&str> = topics.split([',', '\n']).map(str::trim).collect();
+    assert!(["units", "signs", "verdicts", "files", "exit-status"].iter().all(|t| topics.contains(t)), "{topics:?}");
+    let (mut pages, folder) = (String::new(), reader("topics"));
+    for topic in topics {
+        let page = answered(&["help", topic]);
+        assert!(!page.contains("](") && !page.contains("|--"), "{page}");
+        for line in page.lines().filter_map(|l| l.strip_prefix("    $ ")) {
+            answers(line, &folder);
+        }
+        pages += &page;
+    }
+    assert!(pages.contains("0.98..0.99") && pages.contains("self-locking"));
+    // A word that is a command and a topic is answered with both.
+    let laws = answered(&["help", "laws"]);
+    assert!(laws.contains("Usage: willis laws") && laws.contains("Outside its range"), "{laws}");
+    assert_eq!(answered(&["help", "unit"]), answered(&["help", "Units"]));
+    let wrong = refused(&run(&["help", "unist"]), 2);
+    assert!(
+        wrong.contains("did you mean `units`?") && wrong.contains("exit-status") && wrong.contains("analyze"),
+        "{wrong}"
+    );
+    refused(&run(&["help", "units", "signs"]), 2);
+}

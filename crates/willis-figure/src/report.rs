@@ -445,8 +445,8 @@ fn summary(all: &Findings<'_>) -> Section {
         |o: &OperationReport| o.verdict == Verdict::Unique && o.certificate.is_some_and(|c| c.unique_for_every_load);
     if !all.analysis.operations.is_empty() && all.analysis.operations.iter().all(all_proved) {
         let text =
-            "Every solution is the only one, for every load in the same direction of motion: this is proved, not \
-                    found by trying. How exact its values are is another matter."
+            "Each operating point has exactly one equilibrium: this is proved, for any load in the same directions of rotation \
+             and with these efficiencies. The accuracy of the values is stated with each point."
                 .to_owned();
         blocks.push(Block::Notice { level: Level::Good, text });
     }

@@ -174,7 +174,7 @@ fn steps(train: &Train, scenario: &str, steps: u64, audited: bool, n: usize) {
     if audited {
         run.with_energies();
     }
-    run.rehearse();
+    run.prepare_modes();
     for _ in 0..n {
         run.reset();
         run.run(black_box(steps));

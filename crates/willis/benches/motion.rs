@@ -101,7 +101,7 @@ fn fixed(c: &mut Criterion) {
             let task = format!("{name}-fixed-{label}");
             let mut run = FixedStep::new(train, scenario, h).unwrap();
             run.without_angles();
-            run.rehearse();
+            run.prepare_modes();
             run.run(steps as u64);
             let end = run.speed(member).unwrap();
             println!("{task}: ends at {end} rad/s, relative error {:.1e}", end / exact - 1.0);
@@ -179,7 +179,7 @@ fn longest(_: &mut Criterion) {
     let train = trains::automatic();
     let new = || FixedStep::new(&train, "through the gears", 1e-3).unwrap();
     let mut rehearsed = new();
-    rehearsed.rehearse();
+    rehearsed.prepare_modes();
     let known = each_step(20, |all| {
         rehearsed.reset();
         all(&mut rehearsed);

@@ -75,7 +75,7 @@ pub(crate) struct Driven {
 
 /// Torque in an engaged shift element.
 #[derive(Clone, Debug)]
-pub struct TieFlow {
+pub struct ShiftElementFlow {
     /// The element.
     pub element: ShiftElementId,
     /// Torque it exerts on its first member, N m; `None` when several elements share a load in a
@@ -109,7 +109,7 @@ pub struct Flow<R = f64> {
     /// Every mesh.
     pub meshes: Vec<MeshFlow<R>>,
     /// Every engaged shift element.
-    pub ties: Vec<TieFlow>,
+    pub ties: Vec<ShiftElementFlow>,
     /// Every variator.
     pub variators: Vec<VariatorFlow>,
     /// Power in at all inputs, W.
@@ -338,7 +338,11 @@ pub(crate) fn walk<R: Real>(
 
 /// Torques in shift elements and holds: leaf by leaf, as far as equilibrium determines them.
 /// Returns also the reaction of the frame on each member.
-pub(crate) fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (Vec<TieFlow>, Vec<Option<f64>>) {
+pub(crate) fn ties(
+    c: &Configuration<'_>,
+    demand: &[f64],
+    external: &[f64],
+) -> (Vec<ShiftElementFlow>, Vec<Option<f64>>) {
     let train = c.train;
     let mut edges: Vec<([MemberId; 2], Option<ShiftElementId>, Option<f64>)> = c
         .engaged
@@ -390,8 +394,10 @@ pub(crate) fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (
             reactions[m] = Some(known + need[m]);
         }
     }
-    let ties =
-        edges.iter().filter_map(|(_, id, torque)| id.map(|element| TieFlow { element, torque: *torque })).collect();
+    let ties = edges
+        .iter()
+        .filter_map(|(_, id, torque)| id.map(|element| ShiftElementFlow { element, torque: *torque }))
+        .collect();
     (ties, reactions)
 }
 

@@ -12,10 +12,10 @@ use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// A command of the prose and what it is said to print.
-struct Shown {
+pub(crate) struct Shown {
     line: usize,
-    words: Vec<String>,
-    output: Vec<String>,
+    pub(crate) words: Vec<String>,
+    pub(crate) output: Vec<String>,
     /// The TOML block above.
     train: Option<String>,
 }
@@ -124,7 +124,7 @@ fn run(context: &Context) -> Result<String, String> {
 }
 
 /// The first line that does not follow those before it.
-fn first_missing<'a>(shown: &'a [String], printed: &str) -> Option<&'a String> {
+pub(crate) fn first_missing<'a>(shown: &'a [String], printed: &str) -> Option<&'a String> {
     let mut rest = printed.lines().map(without_round_off);
     shown.iter().find(|line| !rest.any(|l| l == without_round_off(line)))
 }
@@ -139,7 +139,7 @@ fn without_round_off(line: &str) -> String {
 }
 
 /// Commands in the blocks of a page.
-fn commands_of(text: &str) -> Vec<Shown> {
+pub(crate) fn commands_of(text: &str) -> Vec<Shown> {
     let mut all: Vec<Shown> = Vec::new();
     let mut train = None;
     let mut block: Option<(&str, usize, Vec<&str>)> = None;

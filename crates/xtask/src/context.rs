@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 
 /// What was said on the command line after the task.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Options {
     /// Seconds of fuzzing.
     pub(crate) seconds: Option<u64>,
@@ -26,6 +26,16 @@ pub(crate) struct Options {
     pub(crate) studio: Option<PathBuf>,
     /// Whether the site does without the pages of the library.
     pub(crate) no_api: bool,
+    /// The program that is asked, where it is not the optimised one of this checkout.
+    pub(crate) program: Option<PathBuf>,
+    /// How what is released is built; else as what is published.
+    pub(crate) profile: Option<String>,
+    /// A wheel that is built, for the release.
+    pub(crate) wheel: Option<PathBuf>,
+    /// Parts that the release does without.
+    pub(crate) no_python: bool,
+    pub(crate) no_studio: bool,
+    pub(crate) no_site: bool,
 }
 
 /// Where things are, and what was said on the command line.
@@ -100,8 +110,16 @@ impl Context {
         serde_json::from_slice(&output.stdout).map_err(|e| format!("`{words}` prints no JSON: {e}"))
     }
 
-    /// The optimised program `willis`.
+    /// The same with other options.
+    pub(crate) fn with(&self, options: Options) -> Self {
+        Self { root: self.root.clone(), target: self.target.clone(), options }
+    }
+
+    /// The optimised program `willis`, or the one that was named.
     pub(crate) fn willis(&self) -> Command {
+        if let Some(program) = &self.options.program {
+            return self.command(program);
+        }
         self.command(self.target.join("release").join(format!("willis{}", env::consts::EXE_SUFFIX)))
     }
 }

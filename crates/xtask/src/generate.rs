@@ -191,6 +191,20 @@ const FIGURES: &[(&str, &[&str])] = &[
         &["draw", "stick", "examples/wolfrom-498-self-locking.toml", "--theme", "auto", "-o"],
     ),
     (
+        // What `willis new automatic` writes.
+        "book/src/figures/new-stick.svg",
+        &[
+            "draw",
+            "stick",
+            "crates/willis-ask/src/questions/new/automatic.toml",
+            "--state",
+            "2",
+            "--theme",
+            "auto",
+            "-o",
+        ],
+    ),
+    (
         "book/src/figures/bevel-stick.svg",
         &["draw", "stick", "examples/bevel-differential.toml", "--theme", "auto", "-o"],
     ),

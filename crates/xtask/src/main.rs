@@ -6,6 +6,7 @@
 mod bench;
 mod book;
 mod context;
+mod dist;
 mod environment;
 mod examples;
 mod exports;
@@ -81,7 +82,7 @@ const STEPS: &[Step] = &[
 /// Tasks that are no steps of `ci`, but are shown like steps.
 const TASKS: &[Step] = &[
     Step::new("generate", "write the generated files", Action::Call(generate::generate)),
-    Step::new("reference", "of the generated files the reference pages of the book only", Action::Call(reference::reference)),
+    Step::new("reference", "of the generated files the reference pages of the book only; [--program FILE] one that is built", Action::Call(reference::reference)),
     Step::new(
         "validate",
         "write the validation pages, then compare every number of others with ours; [--modelica FOLDER] whole trajectories",
@@ -95,7 +96,7 @@ const TASKS: &[Step] = &[
     .may_skip(),
     Step::new(
         "site",
-        "book, gallery, validation pages, studio and references as one folder of pages; [--studio FILE] one that is built; [--no-api]",
+        "book, gallery, validation pages, studio and references as one folder of pages; [--studio FILE] [--program FILE] built before; [--no-api]",
         Action::Call(site::site),
     )
     .may_skip(),
@@ -105,6 +106,11 @@ const TASKS: &[Step] = &[
         Action::Call(exports::exports),
     )
     .may_skip(),
+        "dist",
+        "the release: program, wheel, studio, site, licences and checksums, installed where nothing else is; [--profile PROFILE] \
+         [--program FILE] [--wheel FILE] [--studio FILE] built before, [--no-python] [--no-studio] [--no-site] [--no-api]",
+        Action::Call(dist::dist),
+    ),
     Step::new("bench", "benchmarks of the library", Action::Call(bench::bench)),
     Step::new(
         "measure",
@@ -151,11 +157,35 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
                 options.modelica = Some(std::path::absolute(folder).ok()?);
                 more
             }
-            ("site", "--studio", [file, more @ ..]) => {
+            ("site" | "dist", "--studio", [file, more @ ..]) => {
                 options.studio = Some(std::path::absolute(file).ok()?);
                 more
             }
-            ("site", "--no-api", more) => {
+            ("dist" | "reference" | "site", "--program", [file, more @ ..]) => {
+                options.program = Some(std::path::absolute(file).ok()?);
+                more
+            }
+            ("dist", "--wheel", [file, more @ ..]) => {
+                options.wheel = Some(std::path::absolute(file).ok()?);
+                more
+            }
+            ("dist", "--profile", [name, more @ ..]) => {
+                options.profile = Some(name.clone());
+                more
+            }
+            ("dist", "--no-python", more) => {
+                options.no_python = true;
+                more
+            }
+            ("dist", "--no-studio", more) => {
+                options.no_studio = true;
+                more
+            }
+            ("dist", "--no-site", more) => {
+                options.no_site = true;
+                more
+            }
+            ("site" | "dist", "--no-api", more) => {
                 options.no_api = true;
                 more
             }

@@ -15,5 +15,8 @@ pub(crate) fn builds(context: &Context) -> Vec<Command> {
 
 /// The optimised program, without a word where it is there.
 pub(crate) fn build_willis(context: &Context) -> Result<(), String> {
-    context.run(&format!("{RELEASE} --quiet"))
+    match context.options.program {
+        Some(_) => Ok(()),
+        None => context.run(&format!("{RELEASE} --quiet")),
+    }
 }

@@ -1,7 +1,7 @@
 //! The Python package: built as a wheel, installed where nothing else is, and tested there.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use crate::context::{Context, passes};
@@ -23,6 +23,15 @@ pub(crate) fn python(context: &Context) -> Outcome {
     outcome(test(context, &environment, &wheels))
 }
 
+/// What builds wheels, alone.
+pub(crate) fn builder(context: &Context) -> Environment {
+    let (whole, alone) = (environment(context), "maturin>=1.9,<2");
+    if whole.program(context, "maturin").arg("--version").output().is_ok_and(|o| o.status.success()) {
+        return whole;
+    }
+    Environment::new(context, "dist/maturin", alone)
+}
+
 /// Its environment.
 fn environment(context: &Context) -> Environment {
     Environment::new(context, "python/venv", TOOLS)
@@ -33,15 +42,29 @@ pub(crate) fn builds(context: &Context) -> Vec<Command> {
     environment(context).commands(context).into()
 }
 
-fn test(context: &Context, environment: &Environment, wheels: &Path) -> Result<(), String> {
-    let _ = fs::remove_dir_all(wheels);
+/// The wheel, built into a folder that has no other.
+pub(crate) fn build_wheel(
+    context: &Context,
+    environment: &Environment,
+    folder: &Path,
+    profile: Option<&str>,
+) -> Result<PathBuf, String> {
     let manifest = format!("{CRATE}/Cargo.toml");
     let mut build = environment.program(context, "maturin");
     build.env("WILLIS_WHEEL", "1");
-    build.args(["build", "--quiet", "--manifest-path", &manifest, "--out"]).arg(wheels);
+    build.args(["build", "--quiet", "--manifest-path", &manifest, "--out"]).arg(folder);
+    if let Some(profile) = profile {
+        build.args(["--profile", profile]);
+    }
     passes(&mut build, "maturin build")?;
-    let wheel = fs::read_dir(wheels).map_err(|e| e.to_string())?.flatten().map(|e| e.path()).next();
-    let wheel = wheel.ok_or("maturin made no wheel")?;
+    let files = fs::read_dir(folder).map_err(|e| e.to_string())?.flatten().map(|e| e.path());
+    let wheel = files.into_iter().find(|path| path.extension().is_some_and(|e| e == "whl"));
+    wheel.ok_or("maturin made no wheel".into())
+}
+
+fn test(context: &Context, environment: &Environment, wheels: &Path) -> Result<(), String> {
+    let _ = fs::remove_dir_all(wheels);
+    let wheel = build_wheel(context, environment, wheels, None)?;
     let size = fs::metadata(&wheel).map_err(|e| e.to_string())?.len();
     println!("{}: {:.1} MB", wheel.display(), size as f64 / 1e6);
     // Without link-time optimisation, which the published one has.

@@ -21,6 +21,7 @@ type Page = (&'static str, fn(&Context) -> Result<String, String>);
 pub(crate) const PAGES: &[Page] = &[
     ("book/src/reference-keys.md", keys),
     ("book/src/reference-commands.md", commands),
+    ("book/src/reference-topics.md", topics),
     ("book/src/reference-answers.md", answers),
     ("book/src/reference-codes.md", codes),
     ("book/src/reference-laws.md", laws),
@@ -128,10 +129,28 @@ fn commands(context: &Context) -> Result<String, String> {
         writeln!(page, "| `{}` | {} |", text(question, "usage"), cell(about)).expect("to a text");
     }
     page += "\nBeside the questions there are `willis merge` (shards of a sweep), `willis studio`, `willis schema` (JSON Schema of the train \
-             file, of every answer and every request), `willis completions` and `willis man`.\n\n";
+             file, of every answer and every request), `willis completions`, `willis man` and `willis help` ([topics](reference-topics.md)).\n\n";
     for name in command_names(context)?.iter().filter(|n| *n != "help") {
         let help = printed(context, &["help", name])?;
         write!(page, "## willis {name}\n\n```text\n{}\n```\n\n", help.trim_end()).expect("to a text");
+    }
+    Ok(page.trim_end().to_owned() + "\n")
+}
+
+// Topics of the help
+
+/// The pages that the help prints, in its order.
+fn topics(context: &Context) -> Result<String, String> {
+    const FOLDER: &str = "crates/willis-cli/src/topics";
+    let list = format!("{FOLDER}.rs");
+    let code = fs::read_to_string(context.root.join(&list)).map_err(|e| format!("{list}: {e}"))?;
+    let mut page = format!(
+        "# Topics of the help\n\n{GENERATED}\n`willis help TOPIC` prints one of these, `willis help` lists all commands and topics.\n\n"
+    );
+    for piece in code.split("include_str!(\"topics/").skip(1) {
+        let file = format!("{FOLDER}/{}", piece.split('"').next().unwrap_or_default());
+        let text = fs::read_to_string(context.root.join(&file)).map_err(|e| format!("{file}: {e}"))?;
+        writeln!(page, "#{text}").expect("to a text");
     }
     Ok(page.trim_end().to_owned() + "\n")
 }

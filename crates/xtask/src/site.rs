@@ -22,7 +22,8 @@ pub(crate) fn site(context: &Context) -> Outcome {
         Ok(program) => program,
         Err(why) => return Outcome::Skipped(why),
     };
-    match all(context, &program) {
+    let site = context.target.join("site");
+    match build_site(context, &program, &context.target.join("site-source"), &site) {
         Ok(told) => {
             println!("{told}");
             Outcome::Passed
@@ -31,15 +32,14 @@ pub(crate) fn site(context: &Context) -> Outcome {
     }
 }
 
-fn all(context: &Context, program: &Path) -> Result<String, String> {
+/// Writes the source of the pages and the site into two folders, which are emptied before.
+pub(crate) fn build_site(context: &Context, program: &Path, source: &Path, site: &Path) -> Result<String, String> {
     build_willis(context)?;
     let studio = match &context.options.studio {
         Some(file) => file.clone(),
         None => studio_page(context)?,
     };
-    let source = context.target.join("site-source");
-    let site = context.target.join("site");
-    for folder in [&source, &site] {
+    for folder in [source, site] {
         let _ = fs::remove_dir_all(folder);
     }
     let pages = source.join("src");
@@ -49,7 +49,7 @@ fn all(context: &Context, program: &Path) -> Result<String, String> {
     write(&source.join("search.css"), STYLE)?;
     write(&source.join("search-index.js"), &index(&pages)?)?;
     let mut build = context.command(program);
-    build.arg("build").arg(&source).arg("--dest-dir").arg(&site);
+    build.arg("build").arg(source).arg("--dest-dir").arg(site);
     let words = said(&build);
     passes(&mut build, &words)?;
     copy(&studio, &site.join("studio.html"))?;
@@ -59,28 +59,28 @@ fn all(context: &Context, program: &Path) -> Result<String, String> {
         let kept = |path: &Path| !path.ends_with("src") && !path.ends_with("help.html");
         copy_folder(&context.target.join("doc"), &site.join("api"), &kept)?;
     }
-    let links = check(&site, !context.options.no_api)?;
+    let links = check(site, !context.options.no_api)?;
     Ok(format!("{}: {trains} trains in the gallery, {links} links checked", site.join("index.html").display()))
 }
 
-fn write(path: &Path, text: &str) -> Result<(), String> {
+pub(crate) fn write(path: &Path, text: &str) -> Result<(), String> {
     let fail = |e: std::io::Error| format!("{}: {e}", path.display());
     fs::create_dir_all(path.parent().expect("a folder")).map_err(fail)?;
     fs::write(path, text).map_err(fail)
 }
 
-fn read(path: &Path) -> Result<String, String> {
+pub(crate) fn read(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-fn copy(from: &Path, to: &Path) -> Result<(), String> {
+pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), String> {
     let fail = |e: std::io::Error| format!("{}: {e}", from.display());
     fs::create_dir_all(to.parent().expect("a folder")).map_err(fail)?;
     fs::copy(from, to).map(drop).map_err(fail)
 }
 
 /// Copies a folder with all that is in it and kept.
-fn copy_folder(from: &Path, to: &Path, kept: &dyn Fn(&Path) -> bool) -> Result<(), String> {
+pub(crate) fn copy_folder(from: &Path, to: &Path, kept: &dyn Fn(&Path) -> bool) -> Result<(), String> {
     for entry in fs::read_dir(from).map_err(|e| format!("{}: {e}", from.display()))? {
         let path = entry.map_err(|e| format!("{}: {e}", from.display()))?.path();
         let to = to.join(path.file_name().expect("an entry has a name"));
@@ -448,13 +448,21 @@ const STYLE: &str = "
 .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(15em, 1fr)); gap: 1.5em; }
 .gallery img { width: 100%; height: 11em; object-fit: contain; object-position: left bottom; }
 .content img { max-width: 100%; }
+html.navy, html.coal, html.ayu { --links: #6db8e3; --sidebar-active: #6db8e3; }
 .content thead:not(:has(th:not(:empty))) { display: none; }
 .content table { display: block; overflow-x: auto; }
 @media (max-width: 600px) { .menu-title { display: none; } #find { width: 34vw; } }
 ";
 
-/// A search over headings and texts. The index is a script, because a page from a folder may not fetch a file.
+/// A search over headings and texts, and pictures that open alone, where a phone shows them too small. The index is a script,
+/// because a page from a folder may not fetch a file.
 const SEARCH: &str = r##""use strict";
+for (const picture of document.querySelectorAll(".content img")) {
+  if (picture.closest("a")) continue;
+  const link = Object.assign(document.createElement("a"), { href: picture.src, title: "This picture alone, to enlarge it" });
+  picture.replaceWith(link);
+  link.append(picture);
+}
 (() => {
   const bar = document.querySelector(".right-buttons");
   const index = window.willisIndex;

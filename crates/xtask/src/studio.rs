@@ -72,8 +72,7 @@ fn all(context: &Context) -> Result<(), Stop> {
 /// The page alone, built and not tested; why it cannot be had.
 pub(crate) fn studio_page(context: &Context) -> Result<PathBuf, String> {
     let options = Options { no_tests: true, ..Options::default() };
-    let quiet = Context { root: context.root.clone(), target: context.target.clone(), options };
-    match all(&quiet) {
+    match all(&context.with(options)) {
         Ok(()) => Ok(context.target.join("studio.html")),
         Err(Stop::Lack(why) | Stop::Fault(why)) => Err(why),
     }

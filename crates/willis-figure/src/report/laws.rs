@@ -115,7 +115,7 @@ fn row(e: &Entry) -> Vec<String> {
         }
     }
     let source = format!("{}, {}", cited(e.source.0), e.source.1);
-    let valid = if valid.is_empty() { "not told by the source".to_owned() } else { valid.join("; ") };
+    let valid = if valid.is_empty() { "not stated by the source".to_owned() } else { valid.join("; ") };
     let checked = words::plain(&checked, &Names::new([]));
     vec![e.family.replace('_', " "), e.title.to_owned(), source, valid, checked]
 }
@@ -136,7 +136,7 @@ pub fn again(all: &Findings<'_>) -> Section {
         let lines = text.lines().count();
         blocks.push(Block::Text { text: format!("The train file names {name}, a table of {lines} lines.") });
     }
-    Section { title: "How to do it again".into(), blocks }
+    Section { title: "Reproduce this report".into(), blocks }
 }
 
 /// The train file.

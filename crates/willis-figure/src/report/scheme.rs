@@ -16,7 +16,7 @@ pub fn section(all: &Findings<'_>) -> Section {
     let state = all.analysis.operations.first().and_then(|o| o.state.as_deref());
     let caption = match state {
         Some(state) => {
-            format!("The train in state {state}: shafts, wheels, carriers, shift elements, and the loaded way")
+            format!("The train in state {state}: shafts, wheels, carriers, shift elements, and the power path")
         }
         None => "The train: shafts, wheels, carriers and shift elements".to_owned(),
     };
@@ -39,7 +39,7 @@ fn name(train: &Train, m: MemberId) -> String {
 
 fn wheels(train: &Train) -> Block {
     let heads = ["Mesh", "First wheel", "Second wheel", "Carrier"].map(Column::words).into_iter();
-    let heads = heads.chain([Column::numbers("Pairs"), Column::words("Efficiency on the carrier")]).collect();
+    let heads = heads.chain([Column::numbers("Pairs"), Column::words("Efficiency relative to the carrier")]).collect();
     let rows = (train.meshes().iter())
         .map(|m| {
             let wheel = |k: usize| {

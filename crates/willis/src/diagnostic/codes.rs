@@ -50,8 +50,8 @@ codes! {
     /// Every train file says which format it is written in: `format = 1`. The number changes only
     /// when an old file would be read differently.
     E003 Format: "the format number is missing or unknown";
-    /// A key stands where this format has none of that name. Keys are never ignored: a misspelt
-    /// one would silently drop a datum. `willis schema` prints every key there is.
+    /// This table has no key of that name. Keys are never ignored: a misspelt
+    /// one would silently drop a value. `willis schema` prints every key there is.
     E004 UnknownKey: "unknown key";
     /// This key has no default: add it.
     E005 MissingKey: "a required key is missing";
@@ -65,10 +65,10 @@ codes! {
     /// 100000, counts of planets or meshes from 1 to 1000, an efficiency is above 0 and at
     /// most 1.
     E008 OutOfRange: "number out of range";
-    /// A name is used that nothing carries. Members, shift elements and states are found by the
+    /// Nothing has this name. Members, shift elements and states are found by the
     /// exact name, upper and lower case included; `frame` always exists.
     E101 UnknownName: "unknown name";
-    /// Two things of one kind carry one name, so that a later reference could mean either.
+    /// Two things of one kind have the same name, so that a reference could mean either: rename one of them.
     E102 DuplicateName: "name used twice";
     /// A name is empty, longer than 64 characters, contains a dot, or is the reserved word `frame`. (The
     /// dot separates a set from its planet in `P1.planet`.) Or it has a character that cannot be
@@ -182,8 +182,8 @@ codes! {
     W309 SelfLocking: "the train locks by friction";
     /// With the same speeds and the same prescribed torques several equilibria exist, with
     /// different efficiencies. A rigid quasi-static model cannot choose between them (it is the
-    /// gear form of the Painlevé paradox); all are reported. They live beside self-locking:
-    /// better mesh efficiency makes the answer unique.
+    /// gear form of the Painlevé paradox); all are reported. They occur close to self-locking:
+    /// a better mesh efficiency makes the answer unique.
     W310 SeveralSolutions: "several equilibria exist";
     /// Every loaded member puts power in and none takes power out: all of it turns into heat.
     /// There is no efficiency to speak of.
@@ -223,7 +223,7 @@ codes! {
     /// The message has the number and its limit. Look at the sizes, the loads and the units in the file.
     W322 Implausible: "a number that cannot be right";
     /// Up to the limit of `[heat]` the losses are larger than what housing and cooler carry away, or the losses have no
-    /// single value, so that no oil temperature can be told. The answer is that at the limit, or at the temperature of
+    /// single value, so that the oil temperature is not known. The answer is that at the limit, or at the temperature of
     /// the oil in the file. Reduce the load, or let more heat out: a larger area, moving air, a cooler.
     W330 NoHeatBalance: "no oil temperature below the limit";
     /// Losses and heat flow agree at several oil temperatures, or it could not be decided whether they do. The answer is
@@ -236,7 +236,7 @@ codes! {
     /// The load on one mesh or the relative speed in it is close to zero: a small change of the
     /// operating point changes which gear drives, and with it the loss formula.
     N402 NearBoundary: "close to a change of the loss formula";
-    /// The train has no input and output (or they are one member), so there is no ratio to tell, and
+    /// The train has no input and output (or they are one member), so there is no ratio to print, and
     /// no operation either. Name `terminals`, or `input` and `output`, or add an operation.
     N403 NothingAsked: "nothing to analyse";
     /// The file gives teeth and an efficiency for one mesh: the efficiency is used, and the teeth

@@ -118,7 +118,7 @@ const MOST_ELEMENTS: usize = 64;
 /// let wrong = run.output("roter.speed").unwrap_err();
 /// assert!(wrong.to_string().contains("did you mean `rotor.speed`?"));
 ///
-/// run.rehearse();
+/// run.prepare_modes();
 /// let saved = run.clone();
 /// run.set(motor, 3.0).unwrap();
 /// run.run(1000);
@@ -505,7 +505,7 @@ impl FixedStep {
     /// A step that meets a mode for the first time prepares it, which takes many times as long as a step and
     /// memory. After a rehearsal the same run meets no new mode: its steps allocate nothing and take bounded time.
     /// The modes next to those met are prepared as well, up to 16 MB of them, so that few are new under other inputs.
-    pub fn rehearse(&mut self) {
+    pub fn prepare_modes(&mut self) {
         self.reset();
         for _ in 0..self.steps() {
             self.step();

@@ -2,7 +2,7 @@
 
 /// State of a gear in the sump.
 #[derive(Clone, Copy, Debug)]
-pub struct Dip<D> {
+pub struct ImmersedGear<D> {
     /// Absolute angular speed, ≥ 0, rad/s.
     pub speed: D,
     /// Pitch radius, m.
@@ -35,12 +35,12 @@ pub struct Dip<D> {
 
 family! {
     /// Power lost by a gear that dips into the sump.
-    Churning ("churning"): Dip => "P" ["W"];
+    Churning ("churning"): ImmersedGear => "P" ["W"];
     changenet_2011::Changenet2011,
     iso14179_1::Iso14179p1,
 }
 
-impl Dip<f64> {
+impl ImmersedGear<f64> {
     /// A gear of module 3 mm and 160 mm diameter that dips 40 mm into 0.8 l of oil at 1000 r/min, for
     /// examples and tests.
     pub fn typical() -> Self {

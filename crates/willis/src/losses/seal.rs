@@ -11,7 +11,7 @@ pub enum Material {
 
 /// State of a lip seal.
 #[derive(Clone, Copy, Debug)]
-pub struct Lip<D> {
+pub struct SealContact<D> {
     /// Shaft diameter, m.
     pub diameter: D,
     /// Speed of the shaft relative to the lip, ≥ 0, rad/s.
@@ -26,13 +26,13 @@ pub struct Lip<D> {
 
 family! {
     /// Power lost by a radial lip seal.
-    SealLoss ("seal"): Lip => "P" ["W"];
+    SealLoss ("seal"): SealContact => "P" ["W"];
     iso14179_2::Iso14179p2,
     simrit::Simrit,
     iso14179_1::Iso14179p1,
 }
 
-impl Lip<f64> {
+impl SealContact<f64> {
     /// A fluoro rubber seal on a shaft of 50 mm at 1500 r/min in oil ISO VG 100 at 60 °C, for examples
     /// and tests.
     pub fn typical() -> Self {

@@ -2,12 +2,12 @@
 
 use crate::exact::Rational;
 use crate::losses::Outside;
-use crate::losses::churning::Dip;
+use crate::losses::churning::ImmersedGear;
 use crate::losses::clutch_drag::OpenPack;
 use crate::losses::injection::JetAtMesh;
 use crate::losses::pump::PumpDuty;
 use crate::losses::rotor_drag::Drum;
-use crate::losses::seal::Lip;
+use crate::losses::seal::SealContact;
 use crate::losses::windage::{Disc, mist};
 use crate::power_flow::MeshFlow;
 use crate::real::{self, Real};
@@ -88,7 +88,7 @@ fn torque<R: Real>(power: R, speed: R) -> R {
 
 /// A gear in the fluid around it.
 enum Wet<R> {
-    Dip(Dip<R>),
+    ImmersedGear(ImmersedGear<R>),
     Disc(Disc<R>),
 }
 
@@ -121,7 +121,7 @@ impl<R: Real> Physics<'_, R> {
                 let orbit = self.train.planets.iter().zip(&self.numbers.planets).find(|(p, _)| p.member == body.member);
                 // Planets run through a ring of oil that turns with their carrier.
                 let spun = orbit.map_or(R::from(0.0), |(p, [radius, _])| speeds[p.carrier.0].powi(2) * *radius);
-                Wet::Dip(Dip {
+                Wet::ImmersedGear(ImmersedGear {
                     speed,
                     radius: gear.reference_radius * size,
                     tip_radius: gear.tip_radius * size,
@@ -162,17 +162,17 @@ impl<R: Real> Physics<'_, R> {
     pub(super) fn body(&self, body: &Body, speeds: &[R]) -> R {
         let (power, speed) = match self.wet(body, speeds) {
             None => return R::from(0.0),
-            Some(Wet::Dip(dip)) => (self.train.laws.churning.eval(&dip), dip.speed),
+            Some(Wet::ImmersedGear(dip)) => (self.train.laws.churning.eval(&dip), dip.speed),
             Some(Wet::Disc(disc)) => (self.train.laws.windage.eval(&disc), disc.speed),
         };
         torque(power, speed) * f64::from(body.count)
     }
 
     /// State of a seal; none at rest.
-    fn lip(&self, k: usize, speeds: &[R]) -> Option<Lip<R>> {
+    fn lip(&self, k: usize, speeds: &[R]) -> Option<SealContact<R>> {
         let seal = &self.train.seals[k];
         let speed = self.slip(speeds, seal.members);
-        (speed.re() != 0.0).then(|| Lip {
+        (speed.re() != 0.0).then(|| SealContact {
             diameter: self.numbers.seals[k],
             speed,
             temperature: self.oil.as_ref().map_or(R::from(333.15), |o| o.1.temperature),
@@ -313,7 +313,7 @@ impl Physics<'_> {
         }
         for body in &self.bodies {
             match self.wet(body, speeds) {
-                Some(Wet::Dip(dip)) => {
+                Some(Wet::ImmersedGear(dip)) => {
                     note("churning", laws.churning.meta().id, &body.name, laws.churning.outside(&dip));
                 }
                 Some(Wet::Disc(disc)) => {

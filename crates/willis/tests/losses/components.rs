@@ -11,9 +11,9 @@ use willis::catalogue::Trust;
 use willis::catalogue::bearing::{self, Bearing, Kind, Mismatch};
 use willis::catalogue::oil::{self, Base, Oil};
 use willis::losses::bearing::{BearingDuty, BearingTorque, Palmgren, Skf, Skf6000, Supply};
-use willis::losses::churning::{self, Changenet2011, Churning, Dip};
+use willis::losses::churning::{self, Changenet2011, Churning, ImmersedGear};
 use willis::losses::rotor_drag::{Drum, RotorDrag};
-use willis::losses::seal::{Lip, Material, SealLoss};
+use willis::losses::seal::{Material, SealContact, SealLoss};
 use willis::losses::windage::{self, AndersonLoewenthal, Dawson1984, Diab, Disc, Windage};
 
 #[track_caller]
@@ -561,7 +561,7 @@ fn regress_windage_diab_is_near_dawson() {
 /// Two points of the four regimes, evaluated independently.
 #[test]
 fn val_churning_changenet_2011() {
-    let at = |n: f64| Churning::default().eval(&Dip { speed: rpm(n), ..Dip::typical() });
+    let at = |n: f64| Churning::default().eval(&ImmersedGear { speed: rpm(n), ..ImmersedGear::typical() });
     close("1000 r/min", at(1000.0), 22.13245, 1e-6);
     close("7000 r/min", at(7000.0), 1077.23, 1e-6);
 }
@@ -569,14 +569,14 @@ fn val_churning_changenet_2011() {
 #[test]
 fn churning_is_continuous() {
     let law = Changenet2011::DEFAULT;
-    let jump = |state: Dip<f64>, speed: f64| {
-        let at = |w: f64| churning::Law::eval(&law, &Dip { speed: w, ..state });
+    let jump = |state: ImmersedGear<f64>, speed: f64| {
+        let at = |w: f64| churning::Law::eval(&law, &ImmersedGear { speed: w, ..state });
         (at(speed * (1.0 + 1e-9)) / at(speed * (1.0 - 1e-9)) - 1.0).abs()
     };
-    let typical = Dip::typical();
+    let typical = ImmersedGear::typical();
     // at Re = 4000 as far as the printed digits go, in both regimes of γ
     for speed in [60.0, 500.0] {
-        let state = Dip { kinematic_viscosity: speed * typical.radius * typical.width / 4000.0, ..typical };
+        let state = ImmersedGear { kinematic_viscosity: speed * typical.radius * typical.width / 4000.0, ..typical };
         assert!(jump(state, speed) < 0.003, "Re, {}", jump(state, speed));
     }
     // at both ends of the interpolation in γ
@@ -589,23 +589,23 @@ fn churning_is_continuous() {
 #[test]
 fn regress_churning_iso_14179_1() {
     let law = Churning::named("iso-14179-1").unwrap();
-    close("P", law.eval(&Dip::typical()), 37.8, 0.005);
-    assert_eq!(law.eval(&Dip { immersion: -0.01, ..Dip::typical() }), 0.0);
+    close("P", law.eval(&ImmersedGear::typical()), 37.8, 0.005);
+    assert_eq!(law.eval(&ImmersedGear { immersion: -0.01, ..ImmersedGear::typical() }), 0.0);
 }
 
 // ---------------------------------------------------------------- seals, drum
 
 #[test]
 fn val_seal_iso_14179_2() {
-    close("P", SealLoss::default().eval(&Lip::typical()), 28.8375, 1e-9);
+    close("P", SealLoss::default().eval(&SealContact::typical()), 28.8375, 1e-9);
 }
 
 #[test]
 fn regress_seals() {
     let iso = SealLoss::named("iso-14179-1").unwrap();
-    close("FKM", iso.eval(&Lip::typical()), 29.35124, 1e-4);
-    close("NBR", iso.eval(&Lip { material: Material::Nbr, ..Lip::typical() }), 19.07791, 1e-4);
-    close("Simrit", SealLoss::named("simrit").unwrap().eval(&Lip::typical()), 58.0, 0.002);
+    close("FKM", iso.eval(&SealContact::typical()), 29.35124, 1e-4);
+    close("NBR", iso.eval(&SealContact { material: Material::Nbr, ..SealContact::typical() }), 19.07791, 1e-4);
+    close("Simrit", SealLoss::named("simrit").unwrap().eval(&SealContact::typical()), 58.0, 0.002);
 }
 
 #[test]
@@ -627,10 +627,10 @@ fn nothing_is_lost_at_rest() {
         assert_eq!(law.eval(&Disc { speed: 0.0, ..Disc::typical() }), 0.0);
     }
     for law in Churning::ALL {
-        assert_eq!(law.eval(&Dip { speed: 0.0, ..Dip::typical() }), 0.0);
+        assert_eq!(law.eval(&ImmersedGear { speed: 0.0, ..ImmersedGear::typical() }), 0.0);
     }
     for law in SealLoss::ALL {
-        assert_eq!(law.eval(&Lip { speed: 0.0, ..Lip::typical() }), 0.0);
+        assert_eq!(law.eval(&SealContact { speed: 0.0, ..SealContact::typical() }), 0.0);
     }
     for law in RotorDrag::ALL {
         assert_eq!(law.eval(&Drum { speed: 0.0, ..Drum::typical() }), 0.0);
@@ -668,7 +668,7 @@ proptest! {
             let dual = law.eval(&Disc { speed: w_d, ..disc_dual(&disc(w)) });
             same_slope(law.meta().id, dual, |w| law.eval(&disc(w)), w)?;
         }
-        let bath = |speed| Dip {
+        let bath = |speed| ImmersedGear {
             speed, radius: r, tip_radius: 1.05 * r, root_radius: 0.95 * r, width: b, module: m,
             teeth: 2.0 * r / m, helix: beta, pressure_angle: 0.36, immersion: dip * r, oil_volume: 1e-3,
             kinematic_viscosity: nu, density, gravity: 9.81,
@@ -676,7 +676,7 @@ proptest! {
         for law in Churning::ALL {
             let s = bath(w);
             let fixed = Dual64::from_re;
-            let dual = law.eval(&Dip {
+            let dual = law.eval(&ImmersedGear {
                 speed: w_d, kinematic_viscosity: fixed(nu), density: fixed(density), radius: fixed(s.radius),
                 tip_radius: fixed(s.tip_radius), root_radius: fixed(s.root_radius), width: fixed(s.width),
                 module: fixed(s.module), teeth: s.teeth, helix: fixed(s.helix),
@@ -697,11 +697,11 @@ proptest! {
             });
             same_slope(law.meta().id, dual, |w| law.eval(&drum(w)), w)?;
         }
-        let lip = |temperature| Lip {
+        let lip = |temperature| SealContact {
             diameter: r, speed: w, temperature, viscosity_40: nu, material: Material::Nbr,
         };
         for law in SealLoss::ALL {
-            let dual = law.eval(&Lip {
+            let dual = law.eval(&SealContact {
                 diameter: Dual64::from(r), speed: Dual64::from(w), temperature: Dual64::new(340.0, 1.0),
                 viscosity_40: Dual64::from(nu), material: Material::Nbr,
             });
@@ -742,10 +742,10 @@ fn val_seals_of_angular_contact_bearings_have_their_own_row() {
 /// In an oil ring the regimes change where they do under gravity, scaled: no jump with speed.
 #[test]
 fn churning_in_an_oil_ring_keeps_its_regime() {
-    use willis::losses::churning::{Churning, Dip};
+    use willis::losses::churning::{Churning, ImmersedGear};
     let at = |speed: f64| {
         // The acceleration goes with the square of the speed, as on a carrier.
-        let state = Dip { speed, gravity: 0.005 * speed * speed, ..Dip::typical() };
+        let state = ImmersedGear { speed, gravity: 0.005 * speed * speed, ..ImmersedGear::typical() };
         Churning::default().eval(&state) / speed.powi(3)
     };
     let (slow, fast) = (at(300.0), at(1200.0));

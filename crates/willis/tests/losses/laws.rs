@@ -7,7 +7,7 @@ use allocation_counter::measure;
 use num_dual::Dual64;
 use willis::catalogue::oil::Base;
 use willis::losses::bearing::{BearingDuty, BearingTorque, Supply};
-use willis::losses::churning::{Churning, Dip};
+use willis::losses::churning::{Churning, ImmersedGear};
 use willis::losses::film::{DowsonHigginson, DowsonHigginson1966, Film, FilmContact};
 use willis::losses::film_reduction::{FilmReduction, GuptaCheng, Inlet, MurchWilson};
 use willis::losses::load_sharing::{LoadSharing, Relief, ToothLoad};
@@ -16,7 +16,7 @@ use willis::losses::mesh_friction::{Agma6011, Agma6011PerPlanet, Law as _, MeshC
 use willis::losses::mesh_friction::{BenedictKelley, Fernandes, Matsumoto, Niemann, Schlenk, XuKahraman};
 use willis::losses::rolling::{Rolling, RollingContact};
 use willis::losses::rotor_drag::{Drum, RotorDrag};
-use willis::losses::seal::{Lip, Material, SealLoss};
+use willis::losses::seal::{Material, SealContact, SealLoss};
 use willis::losses::windage::{Disc, Windage};
 use willis::losses::{self, Entry, Tag, Trust, entries};
 
@@ -229,7 +229,7 @@ macro_rules! every_law {
 every_law!(bearing: BearingTorque, BearingDuty {
     speed, radial_load, axial_load, kinematic_viscosity; bearing, base, sliding_friction, supply
 });
-every_law!(churning: Churning, Dip {
+every_law!(churning: Churning, ImmersedGear {
     speed, kinematic_viscosity, density;
     radius, tip_radius, root_radius, width, module, teeth, helix, pressure_angle, immersion, oil_volume, gravity;
     immersion
@@ -253,7 +253,7 @@ every_law!(rolling: Rolling, RollingContact {
 every_law!(rotor_drag: RotorDrag, Drum {
     speed; radius, length, radial_gap, axial_gap, density, viscosity
 });
-every_law!(seal: SealLoss, Lip { speed, temperature; diameter, viscosity_40, material });
+every_law!(seal: SealLoss, SealContact { speed, temperature; diameter, viscosity_40, material });
 every_law!(windage: Windage, Disc {
     speed; radius, root_radius, width, module, teeth, density, viscosity, axial_gaps, enclosure;
     root_radius, radius

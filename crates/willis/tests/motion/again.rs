@@ -75,7 +75,7 @@ fn a_rehearsed_run_takes_the_same_steps() {
     {
         let mut first = FixedStep::new(&train, scenario, 1e-3).expect("a run");
         let mut rehearsed = first.clone();
-        rehearsed.rehearse();
+        rehearsed.prepare_modes();
         for step in 0..steps {
             first.step();
             rehearsed.step();

@@ -14,7 +14,7 @@ pub mod trains;
 /// Steps that allocate in a whole rehearsed run.
 fn steps_that_allocate(train: &Train, scenario: &str, steps: usize) -> Vec<usize> {
     let mut run = FixedStep::new(train, scenario, 1e-3).unwrap();
-    run.rehearse();
+    run.prepare_modes();
     run.reset();
     (0..steps)
         .filter(|_| {
@@ -37,7 +37,7 @@ fn no_step_allocates_after_a_rehearsal() {
 fn other_inputs_meet_modes_that_are_prepared() {
     for (torque, most) in [(140.0, 0), (90.0, 3)] {
         let mut run = FixedStep::new(&trains::automatic(), "through the gears", 1e-3).unwrap();
-        run.rehearse();
+        run.prepare_modes();
         let engine = run.input("engine").unwrap();
         // The first value takes the place of the signal that the file gives.
         run.set(engine, torque).unwrap();
@@ -54,10 +54,10 @@ fn energies_are_counted_beside_the_steps() {
         [(trains::set(), "pulses", 20_000), (trains::automatic(), "through the gears", 16_000)]
     {
         let mut plain = FixedStep::new(&train, scenario, 1e-3).unwrap();
-        plain.rehearse();
+        plain.prepare_modes();
         let mut counted = plain.clone();
         counted.with_energies();
-        counted.rehearse();
+        counted.prepare_modes();
         let taken = measure(|| (0..steps).for_each(|_| counted.step()));
         assert_eq!(taken.count_total, 0, "{scenario}");
         plain.run(steps);
@@ -81,7 +81,7 @@ fn inputs_and_outputs_allocate_nothing() {
     {
         let mut run = FixedStep::new(&train, scenario, 1e-3).unwrap();
         let outputs = outputs(&mut run);
-        run.rehearse();
+        run.prepare_modes();
         let mut sum = 0.0;
         let taken = measure(|| {
             for _ in 0..steps {

@@ -31,6 +31,8 @@ const BRIEF_WORDS: f64 = 13.0;
 const BRIEF_GAP: f64 = 90.0;
 /// Inner radius of what is led back.
 const ROUND: f64 = 8.0;
+/// How many times its words a gap is wide, where a narrow ribbon is steep in it.
+const STEEP_ROOM: f64 = 2.4;
 /// Least room between nodes of a column.
 const APART: f64 = 12.0;
 
@@ -209,7 +211,7 @@ impl Spots<'_, '_> {
         };
         let (dy, far) = match step.checked_sub(1) {
             // On a narrow ribbon words still belong to it more clearly than beyond another.
-            None => (0.0, (2.5 * stray(spot.1)).min(12.0)),
+            None => (0.0, (2.5 * stray(spot.1)).min(if thick < LINE_HEIGHT { 24.0 } else { 12.0 })),
             Some(k) => {
                 let far = 5.0 * (k / 2) as f64;
                 (if k % 2 == 0 { -beside - far } else { beside + far }, far + 2.0)
@@ -530,8 +532,12 @@ impl<'f> Layout<'f> {
                 bends[first + k] = bends[first + k].max((0.5 * fall + 0.3 * self.thickness(j).min(fall)).min(bend));
             }
             if self.told(j) {
-                let texts = self.words.link(l).iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max);
-                bends[first] = bends[first].max(texts + 8.0);
+                let rows = self.words.link(l);
+                let texts = rows.iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max);
+                // A narrow ribbon that is steep has no level part for its words: they need room beside it.
+                let tall = LINE_HEIGHT * rows.len() as f64;
+                let steep = self.thickness(j) < LINE_HEIGHT && (heights[1] - heights[0]).abs() > tall;
+                bends[first] = bends[first].max(if steep { STEEP_ROOM * texts } else { texts } + 8.0);
             }
         }
         (0..layers)

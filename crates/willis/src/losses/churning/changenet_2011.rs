@@ -1,4 +1,4 @@
-use super::{Dip, Law};
+use super::{ImmersedGear, Law};
 use crate::losses::{Meta, Range, Trust};
 use crate::real::{Real, acos, min};
 
@@ -44,13 +44,13 @@ use crate::real::{Real, acos, min};
 /// The number of the equation there is not known to us.
 ///
 /// # Example
-/// By hand, the gear of [`Dip::typical`]: ω = 104.72, Re = 5493, Fr = 89.43, γ = 196.6, θ = 60°,
+/// By hand, the gear of [`ImmersedGear::typical`]: ω = 104.72, Re = 5493, Fr = 89.43, γ = 196.6, θ = 60°,
 /// S_m = 0.017974 m², C_m = 0.239 · 0.53589 · 0.84932 · 0.067471 · 0.67139 = 0.0049276,
 /// T = 0.5 · 850 · 104.72² · 0.08³ · 0.017974 · 0.0049276 = 0.21135 N m, P = 22.13 W.
 /// ```
-/// # use willis::losses::churning::{Changenet2011, Dip, Law};
-/// assert_eq!(format!("{:.2}", Changenet2011::DEFAULT.eval(&Dip::typical())), "22.13");
-/// assert!(Changenet2011::DEFAULT.outside(&Dip::typical()).is_empty());
+/// # use willis::losses::churning::{Changenet2011, ImmersedGear, Law};
+/// assert_eq!(format!("{:.2}", Changenet2011::DEFAULT.eval(&ImmersedGear::typical())), "22.13");
+/// assert!(Changenet2011::DEFAULT.outside(&ImmersedGear::typical()).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Changenet2011;
@@ -61,7 +61,7 @@ impl Changenet2011 {
 }
 
 impl Law for Changenet2011 {
-    const META: Meta<Dip<f64>> = Meta {
+    const META: Meta<ImmersedGear<f64>> = Meta {
         id: "changenet-2011",
         by: "Changenet 2011",
         title: "Changenet and others 2011, four regimes",
@@ -77,7 +77,7 @@ impl Law for Changenet2011 {
         }],
     };
 
-    fn eval<D: Real>(&self, s: &Dip<D>) -> D {
+    fn eval<D: Real>(&self, s: &ImmersedGear<D>) -> D {
         let (w, r, b, h) = (s.speed, s.radius, s.width, s.immersion);
         if w.re() <= 0.0 || h.re() <= 0.0 {
             return D::from(0.0);

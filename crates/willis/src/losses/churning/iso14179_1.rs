@@ -1,4 +1,4 @@
-use super::{Dip, Law};
+use super::{ImmersedGear, Law};
 use crate::losses::{Meta, Trust};
 use crate::real::{Real, abs, clamp, max};
 
@@ -36,13 +36,13 @@ use crate::real::{Real, abs, clamp, max};
 /// `[isotr14179_1]`, oil churning loss. The number of the equation there is not known to us.
 ///
 /// # Example
-/// By hand, the gear of [`Dip::typical`]: f_g = 43/166 = 0.2590, ν n³ = 36.6e9, D^5.7 = 4.515e12,
+/// By hand, the gear of [`ImmersedGear::typical`]: f_g = 43/166 = 0.2590, ν n³ = 36.6e9, D^5.7 = 4.515e12,
 /// D^4.7 = 2.720e10, R_f = 6.381, √tan 10° = 0.41991:
 /// sides 1.474 · 0.2590 · 36.6e9 · 4.515e12/2e25 = 0.003155 kW, teeth
 /// 7.37 · 0.2590 · 36.6e9 · 2.720e10 · 24 · 6.381/(2e25 · 0.41991) = 0.034657 kW, sum 37.8 W.
 /// ```
-/// # use willis::losses::churning::{Dip, Iso14179p1, Law};
-/// assert_eq!(format!("{:.1}", Iso14179p1::DEFAULT.eval(&Dip::typical())), "37.8");
+/// # use willis::losses::churning::{ImmersedGear, Iso14179p1, Law};
+/// assert_eq!(format!("{:.1}", Iso14179p1::DEFAULT.eval(&ImmersedGear::typical())), "37.8");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iso14179p1 {
@@ -56,7 +56,7 @@ impl Iso14179p1 {
 }
 
 impl Law for Iso14179p1 {
-    const META: Meta<Dip<f64>> = Meta {
+    const META: Meta<ImmersedGear<f64>> = Meta {
         id: "iso-14179-1",
         by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1, oil churning",
@@ -66,7 +66,7 @@ impl Law for Iso14179p1 {
         valid: &[],
     };
 
-    fn eval<D: Real>(&self, s: &Dip<D>) -> D {
+    fn eval<D: Real>(&self, s: &ImmersedGear<D>) -> D {
         let dip = s.immersion + s.tip_radius - s.radius;
         let f_g = clamp(dip / (s.tip_radius * 2.0), D::from(0.0), D::from(1.0));
         let n = s.speed * (30.0 / std::f64::consts::PI);

@@ -1,4 +1,4 @@
-use super::{Law, Lip, Material};
+use super::{Law, SealContact, Material};
 use crate::losses::{Meta, Trust};
 use crate::real::Real;
 
@@ -29,8 +29,8 @@ use crate::real::Real;
 /// # Example
 /// By hand, FKM on d = 50 mm at 157.08 rad/s: 0.18685 · 157.08 = 29.35 W.
 /// ```
-/// # use willis::losses::seal::{Iso14179p1, Law, Lip};
-/// assert_eq!(format!("{:.2}", Iso14179p1::DEFAULT.eval(&Lip::typical())), "29.35");
+/// # use willis::losses::seal::{Iso14179p1, Law, SealContact};
+/// assert_eq!(format!("{:.2}", Iso14179p1::DEFAULT.eval(&SealContact::typical())), "29.35");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iso14179p1;
@@ -41,7 +41,7 @@ impl Iso14179p1 {
 }
 
 impl Law for Iso14179p1 {
-    const META: Meta<Lip<f64>> = Meta {
+    const META: Meta<SealContact<f64>> = Meta {
         id: "iso-14179-1",
         by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1",
@@ -51,7 +51,7 @@ impl Law for Iso14179p1 {
         valid: &[],
     };
 
-    fn eval<D: Real>(&self, s: &Lip<D>) -> D {
+    fn eval<D: Real>(&self, s: &SealContact<D>) -> D {
         let d_mm = s.diameter * 1e3;
         let per_mm = match s.material {
             Material::Fkm => 3.737e-3,

@@ -1,4 +1,4 @@
-use super::{Law, Lip};
+use super::{Law, SealContact};
 use crate::losses::{Meta, Trust};
 use crate::real::Real;
 
@@ -29,8 +29,8 @@ use crate::real::Real;
 /// # Example
 /// By hand, d = 50 mm, n = 1500 r/min: 7.69e-6 · 2500 · 1500 = 28.84 W.
 /// ```
-/// # use willis::losses::seal::{Iso14179p2, Law, Lip};
-/// assert_eq!(format!("{:.2}", Iso14179p2::DEFAULT.eval(&Lip::typical())), "28.84");
+/// # use willis::losses::seal::{Iso14179p2, Law, SealContact};
+/// assert_eq!(format!("{:.2}", Iso14179p2::DEFAULT.eval(&SealContact::typical())), "28.84");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iso14179p2;
@@ -41,7 +41,7 @@ impl Iso14179p2 {
 }
 
 impl Law for Iso14179p2 {
-    const META: Meta<Lip<f64>> = Meta {
+    const META: Meta<SealContact<f64>> = Meta {
         id: "iso-14179-2",
         by: "ISO/TR 14179-2",
         title: "Linke (ISO/TR 14179-2)",
@@ -51,7 +51,7 @@ impl Law for Iso14179p2 {
         valid: &[],
     };
 
-    fn eval<D: Real>(&self, s: &Lip<D>) -> D {
+    fn eval<D: Real>(&self, s: &SealContact<D>) -> D {
         let d_mm = s.diameter * 1e3;
         s.speed * (d_mm * 7.69e-6 * d_mm * 30.0 / std::f64::consts::PI)
     }

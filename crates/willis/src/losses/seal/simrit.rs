@@ -1,4 +1,4 @@
-use super::{Law, Lip};
+use super::{Law, SealContact};
 use crate::losses::{Meta, Trust};
 use crate::real::{Real, max};
 
@@ -30,8 +30,8 @@ use crate::real::{Real, max};
 /// # Example
 /// By hand, 60 °C, 100 mm²/s, d = 50 mm, 1500 r/min: (145 − 96 + 350 · 0.301781) 2500 · 1500 · 1e-7 = 58.0 W.
 /// ```
-/// # use willis::losses::seal::{Simrit, Law, Lip};
-/// assert_eq!(format!("{:.1}", Simrit::DEFAULT.eval(&Lip::typical())), "58.0");
+/// # use willis::losses::seal::{Simrit, Law, SealContact};
+/// assert_eq!(format!("{:.1}", Simrit::DEFAULT.eval(&SealContact::typical())), "58.0");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Simrit;
@@ -42,7 +42,7 @@ impl Simrit {
 }
 
 impl Law for Simrit {
-    const META: Meta<Lip<f64>> = Meta {
+    const META: Meta<SealContact<f64>> = Meta {
         id: "simrit",
         by: "Simrit",
         title: "Simrit (ISO/TR 14179-2)",
@@ -52,7 +52,7 @@ impl Law for Simrit {
         valid: &[],
     };
 
-    fn eval<D: Real>(&self, s: &Lip<D>) -> D {
+    fn eval<D: Real>(&self, s: &SealContact<D>) -> D {
         let d_mm = s.diameter * 1e3;
         let celsius = s.temperature - 273.15;
         let oil = (max(s.viscosity_40 * 1e6, D::from(2.0)) + 0.8).log10().log10();
