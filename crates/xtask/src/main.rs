@@ -106,6 +106,7 @@ const TASKS: &[Step] = &[
         Action::Call(exports::exports),
     )
     .may_skip(),
+    Step::new(
         "dist",
         "the release: program, wheel, studio, site, licences and checksums, installed where nothing else is; [--profile PROFILE] \
          [--program FILE] [--wheel FILE] [--studio FILE] built before, [--no-python] [--no-studio] [--no-site] [--no-api]",
