@@ -723,6 +723,14 @@ class AnalyzeContactReport(Record):
     @property
     def sliding_loss(self) -> float: ...
     @property
+    def lengthwise_loss_w(self) -> float | None:
+        """The part of it by sliding along the teeth of hypoid gears, W."""
+    @property
+    def lengthwise_loss(self) -> float | None: ...
+    @property
+    def lengthwise_efficiency(self) -> float | None:
+        """The efficiency of that sliding alone."""
+    @property
     def rolling_loss_w(self) -> float:
         """Loss by rolling where it is computed apart, all pairs in parallel, W."""
     @property
@@ -2672,7 +2680,11 @@ class SensitivityQuantitySensitivity(Record):
         """Whether it is not given but taken."""
     @property
     def together(self) -> list[str]:
-        """Quantities of the same teeth that move with it in proportion, because alone it would contradict them."""
+        """Quantities of the same teeth that move with it, because alone it would contradict them: in proportion,
+        profile shifts by as much."""
+    @property
+    def opposite(self) -> list[str]:
+        """Profile shifts that move by as much the other way, because the centre distance is given."""
     @property
     def step(self) -> Literal["percent", "percent_less", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
         """The step for which changes are told."""
@@ -7555,6 +7567,9 @@ class ImportAttributeReport(Record):
 
 class ImportReport(Record):
     """What was read and what was not."""
+    @property
+    def kind(self) -> str:
+        """The format: ``REXS`` or ``gearsets``."""
     @property
     def version(self) -> str:
         """The version that the file says it has."""

@@ -1078,7 +1078,7 @@ class Questions:
 
     def export(
         self,
-        kind: Literal["csv", "vecto", "modelica-loss-table", "modelica", "simscape", "mujoco", "drake", "openfast", "rexs", "list"] | None = None,
+        kind: Literal["csv", "vecto", "modelica-loss-table", "modelica", "simscape", "mujoco", "drake", "openfast", "c", "simulink", "rexs", "list"] | None = None,
         *,
         state: str | None = None,
         all_states: bool | None = None,
@@ -1414,16 +1414,20 @@ def import_(
     file: str | os.PathLike[str] | object | None = None,
     *,
     convention: str | None = None,
+    schedule: str | os.PathLike[str] | object | None = None,
     threads: int | None = None,
     yes: bool = False,
     progress: bool | Progress | None = None,
 ) -> "contracts.ImportAnswer":
-    """Read a gearbox of another program: a REXS file becomes a train file.
+    """Read a gearbox of another program: a REXS file, or gearsets JSON, becomes a train file.
 
     REXS 1.0 to 1.6, as XML (.rexs), JSON (.rexsj) or zip (.rexsz): cylindrical and planetary stages, gears with
     their geometry, bearings, lubricant, shift elements and load cases. The train file begins with what was assumed
     and what is missing; as text the answer is an account of every attribute: used, left out or unusable. A broken
     file is read as far as it goes. Worm and bevel stages are refused.
+
+    Gearsets JSON describes an automatic transmission: sets with Ns and Nr, clutches, brakes, sprags; its shift
+    schedule stands in a file of its own.
 
     Parameters
     ----------
@@ -1432,6 +1436,8 @@ def import_(
     convention
         Sign of the profile shifts of ring gears in the file: din (positive inward, as REXS says) or outward. Default:
         din.
+    schedule
+        The shift schedule that belongs to a transmission spec of gearsets JSON.
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
@@ -1448,7 +1454,7 @@ def import_(
         _ask(
             "import",
             [],
-            {"file": file, "convention": convention},
+            {"file": file, "convention": convention, "schedule": schedule},
             threads=threads,
             yes=yes,
             progress=progress,

@@ -412,6 +412,33 @@ fn the_model_read_back_is_the_train() {
     }
 }
 
+/// With an operation, computed losses are constant efficiencies at its load; without one, nominal ones, and that is told.
+#[test]
+fn a_modelica_model_takes_the_efficiencies_of_an_operation() {
+    let stage = train("fva-planetary-stage");
+    let asked = |operation: Option<&str>| {
+        made(&stage, "modelica", &ExportRequest { operation: operation.map(str::to_owned), ..ExportRequest::default() })
+    };
+    let efficiencies = |out: &Export| -> Vec<f64> {
+        let rows = out.files[0].text.split("[0, ").skip(1);
+        rows.flat_map(|row| row.split(", ").take(2).map(|x| x.parse().unwrap()).collect::<Vec<f64>>()).collect()
+    };
+    let (rated, nominal) = (asked(Some("rated")), asked(None));
+    let train = stage.train();
+    let frozen = willis::analysis::frozen(train, &train.operations()[0]).unwrap();
+    let product = |forward: bool| -> f64 {
+        let own = frozen.meshes().iter().map(|m| if forward { &m.efficiency.forward } else { &m.efficiency.backward });
+        own.map(|eta| eta.to_f64()).product()
+    };
+    let found = efficiencies(&rated);
+    assert!(found.len() == 2 && (found[0] - product(true)).abs() < 1e-12, "{found:?}");
+    assert!((found[1] - product(false)).abs() < 1e-12 && found != efficiencies(&nominal), "{found:?}");
+    assert!(rated.notes.iter().any(|n| n.contains("`rated`")) && nominal.notes.iter().any(|n| n.contains("nominal")));
+    // What friction depends on is in the file now.
+    let tells = |out: &Export, key: &str| out.not_carried.iter().any(|n| n.key == key);
+    assert!(tells(&nominal, "oil.temperature") && !tells(&rated, "oil.temperature"), "{:?}", rated.not_carried);
+}
+
 #[test]
 fn models_of_every_example_are_read_by_a_parser() {
     let mut count = 0;

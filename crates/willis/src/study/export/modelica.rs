@@ -9,10 +9,11 @@
 //! does. That is the same statics as here, so the model also locks where the train locks. Clutches and brakes take
 //! `engage_X` from 0 to 1. Terminals are flanges; every other member is a node inside.
 
-use crate::diagnostic::Diagnostics;
+use crate::analysis::in_force;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::{Contact, Curve, FRAME, MemberId, ShiftElementKind, Train};
+use crate::train::{Contact, Curve, Efficiency, FRAME, MemberId, ShiftElementKind, Train};
 
 use super::loss_table::{RESERVED, class, string};
 use super::names::{file, identifiers, line, number};
@@ -34,9 +35,41 @@ fn level(curve: &Curve) -> String {
     format!("[{}]", rows.join("; "))
 }
 
+/// The mesh efficiencies that laws give in the operation that was asked for; none without one, or without laws.
+fn at_the_load(
+    train: &Train,
+    request: &Asked,
+    notes: &mut Vec<String>,
+) -> Result<Option<Vec<Efficiency>>, Diagnostics> {
+    if !train.has_laws() {
+        return Ok(None);
+    }
+    let rest = "no bearings, seals or gears in oil; modelica-loss-table has the computed losses of the whole gear";
+    let Some(name) = &request.operation else {
+        notes.push(format!(
+            "tooth losses are computed at operating points: the model has nominal efficiencies (an operation says at which \
+             load to take computed ones), and {rest}"
+        ));
+        return Ok(None);
+    };
+    let operation = train.find_operation(name)?;
+    let Some((all, _)) = in_force(train, operation) else {
+        let message = format!("the operation `{name}` has no single equilibrium from which to take efficiencies");
+        return Err(Diagnostic::new(Code::Unfit, "", message).hint("choose another operation, or none").into());
+    };
+    let told = train.meshes().iter().zip(&all).filter(|(mesh, _)| mesh.computed);
+    let told: Vec<String> = told.map(|(mesh, own)| format!("{} {}", mesh.name, own.forward.to_f64())).collect();
+    notes.push(format!(
+        "computed tooth losses, with what bearings lose by the load of a mesh, are those at the load of operation `{name}`, \
+         constant efficiencies at every other: {}; {rest}",
+        told.join(", ")
+    ));
+    Ok(Some(all))
+}
+
 pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
     if request.state.is_some() || request.operation.is_some() {
-        // Only what they name is checked: the model has all states.
+        // The model has all states; an operation only says at which load losses are taken.
         super::map::gears(train, request)?;
     }
     let mut notes = Vec::new();
@@ -47,6 +80,10 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
         keep.extend(train.meshes()[table.mesh.index()].gears.iter().map(|g| g.member));
     }
     let c = Configuration::new(train, &[], &[], &keep);
+    let c = match at_the_load(train, request, &mut notes)? {
+        Some(all) => c.with_efficiencies(all),
+        None => c,
+    };
     let shown: Vec<usize> = (1..train.members().len()).filter(|&m| !c.inner[m]).collect();
     let names = identifiers(shown.iter().map(|&m| train.members()[m].name.as_str()), RESERVED);
     let terminal = |m: usize| train.terminals().contains(&MemberId(m));
@@ -199,13 +236,6 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
     }
     if !missing.is_empty() {
         notes.push(format!("not in the file, parameters without a value: {}", missing.join(", ")));
-    }
-    if train.has_laws() {
-        notes.push(
-            "tooth losses are computed at operating points: the model has nominal efficiencies, and no bearings, seals \
-             or drag; modelica-loss-table has the computed losses of the whole gear"
-                .into(),
-        );
     }
     if c.elements.len() > 1 {
         notes.push(
