@@ -80,7 +80,10 @@ impl Assembler<'_> {
             self.given_efficiency(&name, place);
         }
         let efficiency = match (efficiency, &teeth) {
-            (None, Some(teeth)) => Some(self.nominal_efficiency(teeth)),
+            (None, Some(teeth)) => {
+                self.hypoid_lock(teeth, &name, place);
+                Some(self.nominal_efficiency(teeth))
+            }
             (given, _) => given,
         };
         if efficiency.is_none() && spec.loss_table.is_none() {

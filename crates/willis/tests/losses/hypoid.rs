@@ -165,6 +165,9 @@ fn val_it_locks_at_its_limit() {
         let spiral = [75.0, 40.0];
         let back = report(&text(spiral, &constant(mu), WHEEL, ""));
         assert_eq!(back.verdict == Verdict::Locked, locks, "{mu}: {:?} {:?}", back.verdict, back.reason);
+        // The nominal efficiency cannot say so; a warning does.
+        let train = Train::from_toml(&text(spiral, &constant(mu), WHEEL, "")).expect("a train");
+        assert_eq!(train.warnings().iter().any(|d| d.code == willis::diagnostic::Code::SelfLocking), locks, "{mu}");
         let forward = solution(&text(spiral, &constant(mu), PINION, ""));
         assert!(forward.efficiency.expect("one") > 0.3, "{:?}", forward.efficiency);
     }
@@ -184,9 +187,8 @@ fn val_derivatives_by_differences() {
         for q in &all.operations[0].quantities {
             let key = q.name.rsplit('.').next().expect("a key");
             // A module moves with the tips that are given, a shift with the other one.
-            if !["width", "pressure_angle", "tip_diameter", "roughness"].contains(&key)
-                && !(key == "module" && more.is_empty())
-            {
+            let moves = ["width", "pressure_angle", "tip_diameter", "roughness"].contains(&key);
+            if !(moves || key == "module" && more.is_empty()) {
                 continue;
             }
             let at = |x: f64| {

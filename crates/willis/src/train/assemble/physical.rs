@@ -532,6 +532,21 @@ impl Assembler<'_> {
         Efficiency { forward, backward }
     }
 
+    /// Says which gear of a hypoid pair cannot drive at the nominal coefficient of friction: a nominal efficiency is never zero.
+    pub fn hypoid_lock(&mut self, teeth: &Teeth, name: &str, place: &str) {
+        let Some(hypoid) = &teeth.hypoid else { return };
+        let mu = self.friction_coefficient;
+        let along = hypoid.lengthwise_efficiency(teeth.pair.data.pressure_angle, mu);
+        let Some(held) = along.iter().position(|eta| *eta <= 0.0) else { return };
+        let message = format!(
+            "{}: at a coefficient of friction of {mu} the friction along the teeth holds gear {} where it should drive; \
+             nominal efficiencies say 1 % there, and only operations say that it locks",
+            clip(name),
+            held + 1
+        );
+        self.report_once(Diagnostic::new(Code::SelfLocking, format!("{place}.gears"), message));
+    }
+
     /// Says that an efficiency stands beside teeth that would give one.
     pub fn given_efficiency(&mut self, name: &str, place: &str) {
         let message = format!("{}: its efficiency is given and used; the teeth tell speeds and pressures", clip(name));
