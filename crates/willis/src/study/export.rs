@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Model;
-use crate::train::Train;
+use crate::train::{Operation, Train};
 use crate::units::{Dimension, Quantity};
 use crate::work::Effort;
 
@@ -62,6 +62,8 @@ struct Asked {
     state: Option<String>,
     all_states: bool,
     operation: Option<String>,
+    /// That operation: trains with other values, which are tried, have none of their own.
+    at: Option<Operation>,
     /// Speeds of the input, rising.
     speeds: Vec<Quantity>,
     /// External torques on the input, rising: positive drives, negative coasts.
@@ -91,6 +93,7 @@ impl Asked {
             state: request.state.clone(),
             all_states: request.all_states,
             operation: request.operation.clone(),
+            at: None,
             speeds,
             torques,
             temperatures: temperatures.iter().map(Quantity::si).collect(),
@@ -244,9 +247,12 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
         let all: Vec<_> = known.clone().collect();
         return Err(d.suggest(kind, known).hint(format!("the exports are: {}", all.join(", "))).into());
     };
-    let asked = Asked::read(request)?;
+    let mut asked = Asked::read(request)?;
+    if let Some(name) = &asked.operation {
+        asked.at = Some(model.train().find_operation(name)?.clone());
+    }
     let done = (found.write)(model.train(), &asked)?;
-    let ends = map::ends(model.train(), &asked);
+    let ends = Asked { at: asked.at.clone(), ..map::ends(model.train(), &asked) };
     let trial = |train: &Train| {
         let done = (found.write)(train, &ends).ok()?;
         Some(done.files.into_iter().map(|f| f.text).collect())

@@ -204,11 +204,14 @@ const LOOKS: [&str; 15] = [
 const SENTENCES: [&str; 9] = ["message", "reason", "reach", "meaning", "sentence", "warning", "hint", "note", "why"];
 
 /// What is read is no sentence of ours: the file, and what it may say there.
-const GRAMMARS: [(&str, &str); 2] = [
+const GRAMMARS: [(&str, &str); 4] = [
     // Keys of warnings in a report, with their own grammar.
     ("summary.rs", r#"strip_prefix("reason: ")"#),
     // The recorded events of another program.
     ("galvagno.rs", "their.why.starts_with"),
+    // Text in comments of C, and the loops of C that is filled in.
+    ("willis-exchange/src/c.rs", r#"text.replace("/*""#),
+    ("willis-exchange/src/c.rs", r#"starts_with("for (")"#),
 ];
 
 /// The text literal at the beginning of an argument.

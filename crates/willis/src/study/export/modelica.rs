@@ -45,14 +45,14 @@ fn at_the_load(
         return Ok(None);
     }
     let rest = "no bearings, seals or gears in oil; modelica-loss-table has the computed losses of the whole gear";
-    let Some(name) = &request.operation else {
+    let Some(operation) = &request.at else {
         notes.push(format!(
             "tooth losses are computed at operating points: the model has nominal efficiencies (an operation says at which \
              load to take computed ones), and {rest}"
         ));
         return Ok(None);
     };
-    let operation = train.find_operation(name)?;
+    let name = &operation.name;
     let Some((all, _)) = in_force(train, operation) else {
         let message = format!("the operation `{name}` has no single equilibrium from which to take efficiencies");
         return Err(Diagnostic::new(Code::Unfit, "", message).hint("choose another operation, or none").into());
