@@ -1711,6 +1711,7 @@ fn wrong_questions_about_variants_are_refused() {
 /// Names below `Commands:`.
 fn commands() -> Vec<String> {
     let help = answered(&["help"]);
+    // Behind the title, up to the first empty line.
     let lines = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
     let named = lines.filter(|l| l.starts_with("  ") && !l.starts_with("   "));
     named.map(|l| l.split_whitespace().next().expect("a name").to_owned()).collect()

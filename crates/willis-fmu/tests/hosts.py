@@ -286,6 +286,7 @@ def ecos():
     try:
         import ecospy
     except OSError as why:
+        # Its library is built for newer systems than some on which this runs; FMPy and libcosim run the unit there too.
         pytest.skip(f"Ecos does not load here: {why}")
     return ecospy
 

@@ -576,10 +576,6 @@ impl Equilibrium {
 /// `sizes` are those of the terms that the entries of `b` are sums of.
 fn certain(b: &DMatrix<f64>, sizes: &DMatrix<f64>, t: &DVector<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = t.len();
-    if n == 1 {
-        let (f, bound) = certain_one(b[0], sizes[0], t[0])?;
-        return Some((vec![f], vec![bound]));
-    }
     let inverse = b.clone().try_inverse()?;
     let mut f = &inverse * t;
     f += &inverse * (t - b * &f);
@@ -594,22 +590,6 @@ fn certain(b: &DMatrix<f64>, sizes: &DMatrix<f64>, t: &DVector<f64>) -> Option<(
     // NaN fails both comparisons.
     let certain = defect < 0.1 && (0..n).all(|j| f[j].abs() > bound[j]);
     certain.then(|| (f.iter().copied().collect(), bound.iter().copied().collect()))
-}
-
-/// The same for one equation, bit for bit: most planetary sets are one.
-fn certain_one(b: f64, size: f64, t: f64) -> Option<(f64, f64)> {
-    if b == 0.0 {
-        return None;
-    }
-    let inverse = 1.0 / b;
-    let mut f = inverse * t;
-    f += inverse * (t - b * f);
-    let unit = 4.0 * 3.0 * f64::EPSILON;
-    let residual = (t - b * f).abs() + (size * f.abs() + t.abs()) * unit;
-    let defect = (1.0 - inverse * b).abs() + inverse.abs() * size * unit + 1e-12;
-    let v = inverse.abs() * residual;
-    let bound = (v + v * defect / (1.0 - defect).max(1e-300)) * (1.0 + 1e-9);
-    (defect < 0.1 && f.abs() > bound).then_some((f, bound))
 }
 
 /// What one unit of force in an element asks of a node, with ρ as given.

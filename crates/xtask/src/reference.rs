@@ -111,6 +111,7 @@ fn without_paths(text: &str) -> String {
 /// Names and first lines of all commands, as the help lists them.
 pub(crate) fn command_names(context: &Context) -> Result<Vec<String>, String> {
     let help = printed(context, &["--help"])?;
+    // Behind the title, up to the first empty line.
     let lines = help.lines().skip_while(|l| *l != "Commands:").skip(1).take_while(|l| !l.is_empty());
     let named = lines.filter(|l| l.starts_with("  ") && !l.starts_with("   "));
     let names: Vec<_> = named.filter_map(|l| l.split_whitespace().next()).map(str::to_owned).collect();
@@ -147,6 +148,7 @@ fn topics(context: &Context) -> Result<String, String> {
     let mut page = format!(
         "# Topics of the help\n\n{GENERATED}\n`willis help TOPIC` prints one of these, `willis help` lists all commands and topics.\n\n"
     );
+    // What stands before the first one is code of its own.
     for piece in code.split("include_str!(\"topics/").skip(1) {
         let file = format!("{FOLDER}/{}", piece.split('"').next().unwrap_or_default());
         let text = fs::read_to_string(context.root.join(&file)).map_err(|e| format!("{file}: {e}"))?;

@@ -6,8 +6,9 @@ use crate::train::{Efficiency, Operation, Train};
 use super::{OperationReport, Verdict, at_its_temperature};
 
 /// The efficiency of every mesh in the only equilibrium of an operation; `None` where there is none, or another. A mesh
-/// with a given efficiency keeps it. Of the others the loss is one fraction whichever gear drives, of hypoid teeth one for each, with what the bearings
-/// lose by the load of the mesh, and at most 99 % as nominal ones; to six decimals, so that fractions made of it stay short.
+/// with a given efficiency keeps it. Of the others the loss is one fraction whichever gear drives, of hypoid teeth one for
+/// each, with what the bearings lose by the load of the mesh, and at most 99 % as nominal ones; to six decimals, so that
+/// fractions made of it stay short.
 pub(crate) fn in_force(train: &Train, operation: &Operation) -> Option<(Vec<Efficiency>, OperationReport)> {
     let settled = at_its_temperature(train, operation, false).ok()?;
     let point = settled.point.filter(|_| settled.report.verdict == Verdict::Unique)?;

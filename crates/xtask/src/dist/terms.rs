@@ -150,6 +150,7 @@ fn imports(folder: &Path) -> Result<BTreeSet<String>, String> {
 
 fn imported(code: &str) -> Vec<String> {
     let mut all = Vec::new();
+    // The first piece of each stands before any import.
     for piece in code.split("from \"").skip(1).chain(code.split("import \"").skip(1)) {
         let from = piece.split('"').next().unwrap_or_default();
         let parts = if from.starts_with('@') { 2 } else { 1 };
