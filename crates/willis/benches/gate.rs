@@ -14,6 +14,7 @@ use willis::analysis::{Selection, analyze};
 use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
 use willis::dynamics::{Batch, FixedStep, Options, Simulation, simulate};
 use willis::model::Model;
+use willis::regimes::{RegimeSelection, regimes};
 use willis::study::{Axis, Hold, Question, Sweep};
 use willis::train::{SetSpec, Train};
 
@@ -36,6 +37,18 @@ const TASKS: &[Task] = &[
     ("eight-speed-text-to-answer", 1, cold),
     ("physical-stage-sweep", SIDE * SIDE, physical_stage),
     ("physical-eight-speed-sweep", SIDE * SIDE, physical_eight_speed),
+    ("chain-analyze-1", 1, |n| chain_analyzed(1, n)),
+    ("chain-analyze-4", 1, |n| chain_analyzed(4, n)),
+    ("chain-analyze-16", 1, |n| chain_analyzed(16, n)),
+    ("chain-analyze-64", 1, |n| chain_analyzed(64, n)),
+    ("chain-regimes-1", 1, |n| chain_regimes(1, n)),
+    ("chain-regimes-4", 1, |n| chain_regimes(4, n)),
+    ("chain-regimes-16", 1, |n| chain_regimes(16, n)),
+    ("chain-regimes-64", 1, |n| chain_regimes(64, n)),
+    ("chain-simulate-1", 1, |n| chain_moved(1, n)),
+    ("chain-simulate-4", 1, |n| chain_moved(4, n)),
+    ("chain-simulate-16", 1, |n| chain_moved(16, n)),
+    ("chain-simulate-64", 1, |n| chain_moved(64, n)),
     ("set-fixed-step", 20_000, |n| steps(&trains::set(), "pulses", 20_000, false, n)),
     ("set-fixed-step-audited", 20_000, |n| steps(&trains::set(), "pulses", 20_000, true, n)),
     ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, false, n)),
@@ -153,18 +166,34 @@ fn physical(text: &str, over: [&str; 2], state: Option<&str>, n: usize) {
 }
 
 fn physical_stage(n: usize) {
-    let text = include_str!("../../../examples/fva-planetary-stage.toml");
-    physical(text, ["sun.speed=100..3000 rpm:32", "sun.torque=50..1600 N m:32"], None, n);
+    physical(trains::STAGE, ["sun.speed=100..3000 rpm:32", "sun.torque=50..1600 N m:32"], None, n);
 }
 
 /// An automatic with a drag on each shaft.
 fn physical_eight_speed(n: usize) {
-    let mut text = include_str!("../../../examples/zf-8hp70.toml").to_owned();
-    for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
-        let values = "coulomb = \"0.2 N m\"\nviscous = \"1e-3 N m s/rad\"";
-        text += &format!("\n[[drag]]\nname = \"drag of {m}\"\nmembers = [\"{m}\"]\n{values}\n");
-    }
+    let text = trains::automatic_with_drags();
     physical(&text, ["input.speed=1000..5000 rpm:32", "input.torque=50..700 N m:32"], Some("3"), n);
+}
+
+/// Sets in series, from text to every answer of `analyze`.
+fn chain_analyzed(sets: usize, n: usize) {
+    let text = trains::chain(sets);
+    for _ in 0..n {
+        black_box(analyze(&Train::from_toml(black_box(&text)).unwrap(), &Selection::default()).unwrap());
+    }
+}
+
+/// The regimes of sets in series, with their formulas.
+fn chain_regimes(sets: usize, n: usize) {
+    let train = Train::from_toml(&trains::chain(sets)).unwrap();
+    for _ in 0..n {
+        black_box(regimes(black_box(&train), &RegimeSelection::default()).unwrap());
+    }
+}
+
+/// A second of sets in series, preparation included.
+fn chain_moved(sets: usize, n: usize) {
+    adaptive(&Train::from_toml(&trains::chain(sets)).unwrap(), "run up", n);
 }
 
 /// Whole runs in steps of 1 ms, modes known; with the energies counted or without.

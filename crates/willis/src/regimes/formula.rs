@@ -542,9 +542,6 @@ impl<'s, 't> Shape<'s, 't> {
         let nodes = setup.nodes();
         let too_long =
             || format!("with {k} elements and {} shafts they would have more than {MOST_TERMS} terms", nodes.len());
-        if nodes.len() > 60 {
-            return Err(too_long());
-        }
         let names = Names::new(setup);
         // What only joins its ends has the ratio one.
         let over = |symbol: &dyn Fn(usize) -> Symbol| -> Vec<Polynomial> {
@@ -581,7 +578,7 @@ impl<'s, 't> Shape<'s, 't> {
         let determinant = |rows: &[Vec<Polynomial>]| {
             let columns: Vec<Vec<Polynomial>> =
                 (0..rows.len()).map(|c| rows.iter().map(|r| r[c].clone()).collect()).collect();
-            symbolic::determinant(&columns, MOST_TERMS).map(|d| d.to_function()).ok_or_else(too_long)
+            symbolic::determinant(&columns, MOST_TERMS).ok_or_else(too_long)
         };
         let whole = determinant(&rows)?;
         if whole.is_zero() {
@@ -619,7 +616,7 @@ impl<'s, 't> Shape<'s, 't> {
                 column.push(Polynomial::from(i64::from(setup.terminals[b].node == *n)));
             }
         }
-        let whole = symbolic::determinant(&columns, MOST_TERMS).map(|d| d.to_function()).ok_or_else(too_long)?;
+        let whole = symbolic::determinant(&columns, MOST_TERMS).ok_or_else(too_long)?;
         if whole.is_zero() {
             return Err("the speeds are not determined by those of the terminals".to_owned());
         }
@@ -630,9 +627,7 @@ impl<'s, 't> Shape<'s, 't> {
                         // Cramer: the node's column replaced by the unit vector of base b's row.
                         let mut changed = columns.clone();
                         changed[at] = (0..nodes.len()).map(|r| Polynomial::from(i64::from(r == k + b))).collect();
-                        symbolic::determinant(&changed, MOST_TERMS)
-                            .map(|d| d.to_function().over(&whole))
-                            .ok_or_else(too_long)
+                        symbolic::determinant(&changed, MOST_TERMS).map(|d| d.over(&whole)).ok_or_else(too_long)
                     })
                     .collect()
             })
