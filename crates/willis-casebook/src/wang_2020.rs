@@ -13,7 +13,7 @@ use willis::catalogue::oil::Base;
 use willis::contract::Format;
 use willis::diagnostic::Code;
 use willis::losses::bearing::{BearingDuty, Skf, Skf6000, Supply};
-use willis::operating_point::{LossKind, Regime};
+use willis::operating_point::{LossKind, LubricationRegime};
 use willis::train::Train;
 
 /// The gearbox with teeth, oil and bearings.
@@ -762,7 +762,8 @@ pub(crate) fn data() -> Vec<(&'static str, String)> {
         let schlenk = Variant { planets: 3, replace: &replace, ..Variant::default() }.rated();
         let laws = [("mesh_friction", "coulomb-by-regime")];
         let regime = Variant { planets: 3, replace: &replace, laws: &laws }.rated();
-        let of = |r: Regime| schlenk.film_ratio.iter().filter(|x| Regime::of(**x) == r).count() as f64;
+        let of =
+            |r: LubricationRegime| schlenk.film_ratio.iter().filter(|x| LubricationRegime::of(**x) == r).count() as f64;
         let [a, b, c, d] = schlenk.film_ratio;
         lubrication.row(&[
             um.parse().unwrap_or(f64::NAN),
@@ -770,9 +771,9 @@ pub(crate) fn data() -> Vec<(&'static str, String)> {
             b,
             c,
             d,
-            of(Regime::Boundary),
-            of(Regime::Mixed),
-            of(Regime::Full),
+            of(LubricationRegime::Boundary),
+            of(LubricationRegime::Mixed),
+            of(LubricationRegime::Full),
             schlenk.friction[0],
             regime.friction[0],
             100.0 * schlenk.efficiency,

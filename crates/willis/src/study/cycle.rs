@@ -10,7 +10,7 @@ use crate::analysis::{self, Losses, SolutionReport};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::operating_point::LossKind;
 use crate::train::{Load, Operation, Train};
 use crate::work::{self, Effort, Work};
@@ -354,21 +354,21 @@ pub struct CycleReport {
     /// Mean loss power over the covered time, W.
     pub mean_loss_w: Option<f64>,
     /// Energy lost by kind, J.
-    pub losses_j: Named<f64>,
+    pub losses_j: NameMap<f64>,
     /// Energy lost by source, largest first.
     pub sources: Vec<SourceEnergy>,
     /// By which way power goes.
-    pub ways: Named<Energies>,
+    pub ways: NameMap<Energies>,
     /// By state of the shift table.
-    pub states: Named<Energies>,
+    pub states: NameMap<Energies>,
     /// By terminal through which power passes.
-    pub terminals: Named<TerminalEnergy>,
+    pub terminals: NameMap<TerminalEnergy>,
     /// By verdict, with the reasons of those without an answer.
-    pub verdicts: Named<VerdictTime>,
+    pub verdicts: NameMap<VerdictTime>,
     /// The worst rows.
     pub worst: Worst,
     /// Warnings by their code.
-    pub warnings: Named<Vec<RepeatedMessage>>,
+    pub warnings: NameMap<Vec<RepeatedMessage>>,
     /// What is remarkable about the profile.
     pub notes: Vec<String>,
     /// The oil temperature, where it follows from the losses.

@@ -13,7 +13,7 @@ use willis::analysis::{Role, Selection, Verdict, analyze};
 use willis::compiled::{Duty, Output, PointVerdict};
 use willis::exact::Rational;
 use willis::regimes::{
-    Atlas, ClosedFormula, Efficiencies, FormulaRequest, Outside, Ratios, Reach, RegimeReport, RegimeSelection,
+    Atlas, ClosedFormula, Efficiencies, FormulaError, FormulaRequest, Ratios, Reach, RegimeReport, RegimeSelection,
     RegionReport, SymbolKind, formulas, regimes,
 };
 use willis::symbolic::Notation;
@@ -71,7 +71,7 @@ fn evaluate(
     sources: &[(String, Source)],
     speed: &dyn Fn(&str) -> Rational,
     torque: &dyn Fn(&str) -> Rational,
-) -> Result<Rational, Outside> {
+) -> Result<Rational, FormulaError> {
     f.evaluate(&|name| {
         let (_, source) = sources.iter().find(|(n, _)| n == name)?;
         Some(match source {
@@ -389,7 +389,7 @@ fn val_all_80_regimes_of_one_set_with_two_freedoms() {
                             let (w, t) = (back(&p.w), back(&p.t));
                             assert_eq!(evaluate(formula, &sources, &|l| at(&w, l), &|l| at(&t, l)), found);
                             let wrong = evaluate(formula, &sources, &|l| at(&p.w, l), &|l| at(&t, l));
-                            assert!(matches!(wrong, Err(Outside::Condition(_))), "{wrong:?} {p:?}");
+                            assert!(matches!(wrong, Err(FormulaError::Condition(_))), "{wrong:?} {p:?}");
                         }
                         // The bounds of the efficiency are its limits at the bounding directions.
                         let mut ends = [(from, to), (to, from)].map(|(near, far)| {
@@ -737,9 +737,9 @@ fn compare_inversions(shape: &Shape, eta: [i64; 2], random: &mut Dice) -> usize 
             }
         }
         for wrong in [Rational::ZERO, q(-1, 2), q(1001, 1000)] {
-            assert!(matches!(number(&set.r, &wrong), Err(Outside::NoEfficiency(_))), "{what}");
+            assert!(matches!(number(&set.r, &wrong), Err(FormulaError::NoEfficiency(_))), "{what}");
         }
-        assert_eq!(f.evaluate(&|_| None), Err(Outside::Missing(f.arguments[0].name.clone())));
+        assert_eq!(f.evaluate(&|_| None), Err(FormulaError::Missing(f.arguments[0].name.clone())));
     }
     locked
 }
