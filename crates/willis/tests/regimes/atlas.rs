@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use allocation_counter::measure;
 use serde_json::Value;
 use willis::analysis::{Role, Selection, Verdict, analyze};
-use willis::compiled::{Duty, Output, PointVerdict};
+use willis::compiled::{CompileRequest, CompiledOutput, PointVerdict};
 use willis::exact::Rational;
 use willis::regimes::{
     Atlas, ClosedFormula, Efficiencies, FormulaError, FormulaRequest, Ratios, Reach, RegimeReport, RegimeSelection,
@@ -953,11 +953,11 @@ fn given_torques(formulas: &[(&ClosedFormula, Vec<(String, Source)>)]) -> Vec<St
     all
 }
 
-fn duty_of(atlas: &Atlas, speeds: &[String], torques: &[String]) -> Duty {
-    let duty = Duty::new(speeds.iter().map(String::as_str), torques.iter().map(String::as_str));
+fn duty_of(atlas: &Atlas, speeds: &[String], torques: &[String]) -> CompileRequest {
+    let duty = CompileRequest::new(speeds.iter().map(String::as_str), torques.iter().map(String::as_str));
     let duty = if atlas.state == "as drawn" { duty } else { duty.state(&atlas.state) };
-    let duty = duty.output(Output::Efficiency);
-    atlas.terminals.iter().fold(duty, |d, t| d.output(Output::Torque(t.clone())))
+    let duty = duty.output(CompiledOutput::Efficiency);
+    atlas.terminals.iter().fold(duty, |d, t| d.output(CompiledOutput::Torque(t.clone())))
 }
 
 fn sign(x: f64) -> i8 {
@@ -1055,8 +1055,8 @@ fn compare_one_freedom(name: &str, train: &Train, atlas: &Atlas, random: &mut Di
             assert_eq!(own.count(), 1, "{what}");
         }
         // Prescribed: the speed of the input and a load at the output, which only driving answers.
-        let duty =
-            duty_of(atlas, std::slice::from_ref(from), std::slice::from_ref(to)).output(Output::Speed(to.clone()));
+        let duty = duty_of(atlas, std::slice::from_ref(from), std::slice::from_ref(to))
+            .output(CompiledOutput::Speed(to.clone()));
         let compiled = train.compile(&duty).unwrap();
         let mut work = compiled.workspace();
         let mut out = vec![0.0; compiled.outputs()];
