@@ -14,7 +14,7 @@ use willis::analysis::{Selection, analyze, operate};
 use willis::dynamics::{Batch, FixedStep, Options, simulate};
 use willis::model::Model;
 use willis::regimes::{RegimeSelection, regimes};
-use willis::study::{Axis, Hold, Question, Sweep, UncertaintyRequest, sensitivity, uncertainty};
+use willis::study::{Axis, Hold, PointSetup, Sweep, UncertaintyRequest, sensitivity, uncertainty};
 use willis::train::Train;
 use willis::work::Serial;
 
@@ -60,7 +60,7 @@ fn physical(c: &mut Criterion) {
     for (name, text, over, state) in cases {
         let model = Model::from_toml(text).unwrap();
         let sweep = || {
-            let question = Question::new(&model, None, state, Hold::AsGiven).unwrap();
+            let question = PointSetup::new(&model, None, state, Hold::AsGiven).unwrap();
             let axes = over.map(|axis| Axis::parse(&format!("{axis}:{SIDE}"), &model).unwrap()).to_vec();
             Sweep::new(question, axes, &[]).unwrap()
         };

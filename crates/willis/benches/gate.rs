@@ -11,11 +11,11 @@ use std::path::Path;
 use std::process::Command;
 
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
+use willis::compiled::{BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
 use willis::dynamics::{Batch, FixedStep, Options, Simulation, simulate};
 use willis::model::Model;
 use willis::regimes::{RegimeSelection, regimes};
-use willis::study::{Axis, Hold, Question, Sweep};
+use willis::study::{Axis, Hold, PointSetup, Sweep};
 use willis::train::{SetSpec, Train};
 
 /// More than this above the recorded count fails.
@@ -82,7 +82,7 @@ fn inputs(ranges: [(f64, f64); 3]) -> [Vec<f64>; 3] {
     ranges.map(|(low, high)| (0..POINTS).map(|_| low + (high - low) * next()).collect())
 }
 
-fn power_split(outputs: &[Output]) -> CompiledTrain {
+fn power_split(outputs: &[CompiledOutput]) -> CompiledTrain {
     let train = Train::builder("power split")
         .members(["sun", "ring", "carrier"])
         .terminals(["sun", "ring", "carrier"])
@@ -90,8 +90,9 @@ fn power_split(outputs: &[Output]) -> CompiledTrain {
         .build()
         .unwrap();
     let drag = ShaftDrag { coulomb: 0.5, viscous: 1e-3 };
-    let duty = Duty::new(["sun", "carrier"], ["sun"]).drag("sun", drag).drag("ring", drag).drag("carrier", drag);
-    train.compile(&outputs.iter().cloned().fold(duty, Duty::output)).unwrap()
+    let duty =
+        CompileRequest::new(["sun", "carrier"], ["sun"]).drag("sun", drag).drag("ring", drag).drag("carrier", drag);
+    train.compile(&outputs.iter().cloned().fold(duty, CompileRequest::output)).unwrap()
 }
 
 fn run(compiled: &CompiledTrain, speeds: &[&[f64]], torque: &[f64], times: usize) {
@@ -99,30 +100,36 @@ fn run(compiled: &CompiledTrain, speeds: &[&[f64]], torque: &[f64], times: usize
     let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
     let mut work = compiled.workspace();
     for _ in 0..times {
-        compiled.evaluate_batch(&Points { speeds, torques: &[torque] }, &mut work, black_box(&mut slices));
+        compiled.evaluate_batch(&BatchInputs { speeds, torques: &[torque] }, &mut work, black_box(&mut slices));
     }
 }
 
 fn map_all(n: usize) {
     let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
-    let outputs = [Output::Torque("ring".into()), Output::Torque("carrier".into()), Output::Loss, Output::Efficiency];
+    let outputs = [
+        CompiledOutput::Torque("ring".into()),
+        CompiledOutput::Torque("carrier".into()),
+        CompiledOutput::Loss,
+        CompiledOutput::Efficiency,
+    ];
     run(&power_split(&outputs), &[&w0, &w1], &t, n);
 }
 
 fn map_efficiency(n: usize) {
     let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
-    run(&power_split(&[Output::Efficiency]), &[&w0, &w1], &t, n);
+    run(&power_split(&[CompiledOutput::Efficiency]), &[&w0, &w1], &t, n);
 }
 
 fn eight_speed(gear: &str, by_load: bool) -> CompiledTrain {
     let train = Train::from_toml(include_str!("../../../examples/zf-8hp70.toml")).unwrap();
-    let mut duty = Duty::new(["input"], ["input"]).state(gear).output(Output::Torque("output".into()));
+    let mut duty =
+        CompileRequest::new(["input"], ["input"]).state(gear).output(CompiledOutput::Torque("output".into()));
     for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
         duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
     }
     let law = PowerLoss { coefficient: 0.02, exponent: 0.2, torque: 1.0, speed: 1.0, ..PowerLoss::default() };
     for s in 1..=4 {
-        duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+        duty = duty.output(CompiledOutput::MeshTorque(format!("P{s}.sun-planet")));
         if by_load {
             duty = duty.mesh_loss(&format!("P{s}"), law);
         }
@@ -158,7 +165,7 @@ fn cold(n: usize) {
 fn physical(text: &str, over: [&str; 2], state: Option<&str>, n: usize) {
     let model = Model::from_toml(text).unwrap();
     for _ in 0..n {
-        let question = Question::new(&model, None, state, Hold::AsGiven).unwrap();
+        let question = PointSetup::new(&model, None, state, Hold::AsGiven).unwrap();
         let axes = over.map(|axis| Axis::parse(axis, &model).unwrap()).to_vec();
         let sweep = Sweep::new(question, axes, &[]).unwrap();
         black_box(sweep.rows(0, sweep.len(), &mut Default::default()));

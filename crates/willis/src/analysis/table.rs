@@ -8,7 +8,7 @@ use crate::statics::{Answer, Certificate, Equilibrium, Solution, Unsolvable, tor
 use crate::train::{MemberId, ShiftElementId, ShiftElementKind, Train};
 
 use super::words::{element_names, names};
-use super::{Direction, Named, StateReport, Verdict, Why};
+use super::{Direction, NameMap, StateReport, Verdict, Why};
 
 /// The row of a state; `None` when the train has no input and output.
 pub(super) fn row(
@@ -129,7 +129,7 @@ pub(super) fn row(
 }
 
 /// Ratio of each state over that of the next one.
-pub(super) fn steps(ratios: &mut Named<StateReport>) {
+pub(super) fn steps(ratios: &mut NameMap<StateReport>) {
     for k in 1..ratios.0.len() {
         let [(_, a), (_, b)] = &ratios.0[k - 1..=k] else { unreachable!("two rows") };
         if let (Some(i), Some(j), true) = (a.value, b.value, (&a.input, &a.output) == (&b.input, &b.output)) {

@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::duty::{PointVerdict, Points, ShaftDrag};
+use super::duty::{BatchInputs, PointVerdict, ShaftDrag};
 use super::iterated::{Iterated, Lanes};
 use super::parts::{CHUNK, MOST_FEATURES, MOST_LINEAR, MOST_MOVING, Parts, Target, TorqueFrom};
 use super::passes::{combine, dot, lane};
@@ -342,7 +342,7 @@ impl General {
     pub fn chunk(
         &self,
         arch: pulp::Arch,
-        points: &Points<'_>,
+        points: &BatchInputs<'_>,
         range: Range<usize>,
         w: &mut Chunk,
         hint: &mut usize,
@@ -926,7 +926,7 @@ impl Single {
     pub fn chunk(
         &self,
         arch: pulp::Arch,
-        points: &Points<'_>,
+        points: &BatchInputs<'_>,
         range: Range<usize>,
         w: &mut Chunk,
         only_efficiency: bool,

@@ -2,7 +2,9 @@
 
 use allocation_counter::measure;
 use willis::analysis::{Selection, Verdict, analyze};
-use willis::compiled::{CompiledTrain, Duty, Output, PointVerdict, Points, PowerLoss, ShaftDrag};
+use willis::compiled::{
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PointVerdict, PowerLoss, ShaftDrag,
+};
 use willis::diagnostic::Code;
 use willis::train::{OperationSpec, SetSpec, Specification, Train};
 use willis::units::{AngularSpeed, Torque};
@@ -34,12 +36,12 @@ fn compiled_equals_analysis_with_two_freedoms() {
         (power_split(), ["sun", "ring"], "carrier", ["sun", "ring"]),
         (compound_split(), ["a", "d"], "a", ["b", "d"]),
     ] {
-        let duty = Duty::new(speeds, [torque])
-            .output(Output::Torque(open[0].into()))
-            .output(Output::Torque(open[1].into()))
-            .output(Output::Loss)
-            .output(Output::Efficiency)
-            .output(Output::Speed(open[0].into()));
+        let duty = CompileRequest::new(speeds, [torque])
+            .output(CompiledOutput::Torque(open[0].into()))
+            .output(CompiledOutput::Torque(open[1].into()))
+            .output(CompiledOutput::Loss)
+            .output(CompiledOutput::Efficiency)
+            .output(CompiledOutput::Speed(open[0].into()));
         let compiled = builder.clone().build().unwrap().compile(&duty).unwrap();
         let mut work = compiled.workspace();
         for k in 0..300 {
@@ -89,14 +91,14 @@ fn compiled_equals_analysis_in_every_gear() {
         let input = train.member_name(train.input().unwrap()).to_owned();
         let output = train.member_name(train.output().unwrap()).to_owned();
         for state in train.states() {
-            let mut duty = Duty::new([input.as_str()], [input.as_str()])
+            let mut duty = CompileRequest::new([input.as_str()], [input.as_str()])
                 .state(&state.name)
-                .output(Output::Torque(output.clone()))
-                .output(Output::Efficiency);
+                .output(CompiledOutput::Torque(output.clone()))
+                .output(CompiledOutput::Efficiency);
             let elements: Vec<String> =
                 state.engaged.iter().map(|e| train.shift_elements()[e.index()].name.clone()).collect();
             for e in &elements {
-                duty = duty.output(Output::ShiftElementTorque(e.clone()));
+                duty = duty.output(CompiledOutput::ShiftElementTorque(e.clone()));
             }
             let compiled = train.compile(&duty).unwrap();
             assert!(compiled.is_certified());
@@ -130,7 +132,7 @@ fn compiled_equals_analysis_in_every_gear() {
     }
 }
 
-fn with_drag(duty: Duty, members: &[&str]) -> Duty {
+fn with_drag(duty: CompileRequest, members: &[&str]) -> CompileRequest {
     members
         .iter()
         .enumerate()
@@ -148,38 +150,48 @@ fn a_batch_equals_its_points() {
         (column(-400.0, 400.0, &mut random), column(-150.0, 150.0, &mut random), column(-200.0, 200.0, &mut random));
     let eight = common::train("zf-8hp70");
     let shafts = ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"];
-    let mut duties: Vec<(Train, Duty, usize)> = Vec::new();
+    let mut duties: Vec<(Train, CompileRequest, usize)> = Vec::new();
     for gear in ["1", "5", "8", "R"] {
-        let duty = with_drag(Duty::new(["input"], ["input"]).state(gear), &shafts)
-            .output(Output::Torque("output".into()))
-            .output(Output::MeshTorque("P4.sun-planet".into()))
-            .output(Output::Speed("output".into()))
-            .output(Output::Loss)
-            .output(Output::Efficiency);
+        let duty = with_drag(CompileRequest::new(["input"], ["input"]).state(gear), &shafts)
+            .output(CompiledOutput::Torque("output".into()))
+            .output(CompiledOutput::MeshTorque("P4.sun-planet".into()))
+            .output(CompiledOutput::Speed("output".into()))
+            .output(CompiledOutput::Loss)
+            .output(CompiledOutput::Efficiency);
         duties.push((eight.clone(), duty, 1));
     }
     for outputs in [
-        vec![Output::Torque("ring".into()), Output::Torque("carrier".into()), Output::Loss, Output::Efficiency],
-        vec![Output::Efficiency],
-        vec![Output::Loss, Output::Torque("carrier".into()), Output::Loss, Output::Torque("sun".into())],
-        vec![Output::Speed("ring".into()), Output::Efficiency],
+        vec![
+            CompiledOutput::Torque("ring".into()),
+            CompiledOutput::Torque("carrier".into()),
+            CompiledOutput::Loss,
+            CompiledOutput::Efficiency,
+        ],
+        vec![CompiledOutput::Efficiency],
+        vec![
+            CompiledOutput::Loss,
+            CompiledOutput::Torque("carrier".into()),
+            CompiledOutput::Loss,
+            CompiledOutput::Torque("sun".into()),
+        ],
+        vec![CompiledOutput::Speed("ring".into()), CompiledOutput::Efficiency],
     ] {
-        let mut duty = with_drag(Duty::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
+        let mut duty = with_drag(CompileRequest::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
         for o in outputs {
             duty = duty.output(o);
         }
         duties.push((power_split().build().unwrap(), duty, 2));
     }
-    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"])
-        .output(Output::Torque("b".into()))
-        .output(Output::Efficiency);
+    let duty = with_drag(CompileRequest::new(["a", "d"], ["a"]), &["a", "c"])
+        .output(CompiledOutput::Torque("b".into()))
+        .output(CompiledOutput::Efficiency);
     duties.push((compound_split().build().unwrap(), duty, 2));
     for (train, duty, freedoms) in duties {
         let compiled = train.compile(&duty).unwrap();
         let mut work = compiled.workspace();
         let speeds: Vec<&[f64]> = [&w0[..], &w1[..]][..freedoms].to_vec();
         let torques = [&t[..]];
-        let points = Points { speeds: &speeds, torques: &torques };
+        let points = BatchInputs { speeds: &speeds, torques: &torques };
         let mut out = vec![vec![f64::NAN; n]; compiled.outputs()];
         let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
         assert_eq!(compiled.evaluate_batch(&points, &mut work, &mut slices), 0);
@@ -204,9 +216,9 @@ fn a_batch_equals_its_points() {
 #[test]
 fn a_point_allocates_nothing() {
     let train = common::train("zf-8hp70");
-    let duty = with_drag(Duty::new(["input"], ["input"]).state("5"), &["input", "output", "c3"])
-        .output(Output::Torque("output".into()))
-        .output(Output::Efficiency);
+    let duty = with_drag(CompileRequest::new(["input"], ["input"]).state("5"), &["input", "output", "c3"])
+        .output(CompiledOutput::Torque("output".into()))
+        .output(CompiledOutput::Efficiency);
     for duty in [duty.clone(), with_laws(duty)] {
         let compiled = train.compile(&duty).unwrap();
         let mut work = compiled.workspace();
@@ -219,7 +231,7 @@ fn a_point_allocates_nothing() {
             for i in 0..1000 {
                 compiled.evaluate(&[w[i]], &[t[i]], &mut work, &mut out);
             }
-            compiled.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
+            compiled.evaluate_batch(&BatchInputs { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
         });
         assert_eq!(count.count_total, 0);
     }
@@ -229,7 +241,7 @@ fn a_point_allocates_nothing() {
 #[test]
 fn verdicts_of_points() {
     let train = common::train("two-efficiencies");
-    let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
+    let duty = CompileRequest::new(["input"], ["output"]).output(CompiledOutput::Efficiency);
     let compiled = train.compile(&duty).unwrap();
     assert!(!compiled.is_certified());
     let mut work = compiled.workspace();
@@ -242,7 +254,7 @@ fn verdicts_of_points() {
     assert!(out[0].is_nan());
     let (w, t) = ([100.0; 7], [-10.0, 10.0, -1.0, 5.0, -5.0, 1.0, -3.0]);
     let mut column = [0.0; 7];
-    let odd = compiled.evaluate_batch(&Points { speeds: &[&w], torques: &[&t] }, &mut work, &mut [&mut column]);
+    let odd = compiled.evaluate_batch(&BatchInputs { speeds: &[&w], torques: &[&t] }, &mut work, &mut [&mut column]);
     assert_eq!(odd, 7);
     assert!(column[1].is_nan() && column[0] > 0.0);
     let a = analyze(&train, &Selection::default()).unwrap();
@@ -272,21 +284,21 @@ fn eight_speed(etas: [f64; 4]) -> Train {
     Train::from_toml(&text).unwrap()
 }
 
-fn eight_speed_duty(gear: &str) -> Duty {
-    let mut duty = Duty::new(["input"], ["input"]).state(gear);
+fn eight_speed_duty(gear: &str) -> CompileRequest {
+    let mut duty = CompileRequest::new(["input"], ["input"]).state(gear);
     for m in SHAFTS {
         duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
     }
     for s in 1..=4 {
-        duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+        duty = duty.output(CompiledOutput::MeshTorque(format!("P{s}.sun-planet")));
     }
     for m in SHAFTS {
-        duty = duty.output(Output::Speed(m.into()));
+        duty = duty.output(CompiledOutput::Speed(m.into()));
     }
-    duty.output(Output::Torque("output".into())).output(Output::Loss).output(Output::Efficiency)
+    duty.output(CompiledOutput::Torque("output".into())).output(CompiledOutput::Loss).output(CompiledOutput::Efficiency)
 }
 
-fn with_laws(duty: Duty) -> Duty {
+fn with_laws(duty: CompileRequest) -> CompileRequest {
     (1..=4).fold(duty, |d, s| d.mesh_loss(&format!("P{s}"), LAW))
 }
 
@@ -371,9 +383,9 @@ fn load_dependent_batches_are_their_points() {
         duties.push((eight_speed([1.0; 4]), with_laws(eight_speed_duty(gear)), 1));
     }
     let steep = PowerLoss { exponent: 0.6, torque: 0.0, speed: 0.5, ..LAW };
-    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"])
-        .output(Output::Torque("b".into()))
-        .output(Output::Efficiency);
+    let duty = with_drag(CompileRequest::new(["a", "d"], ["a"]), &["a", "c"])
+        .output(CompiledOutput::Torque("b".into()))
+        .output(CompiledOutput::Efficiency);
     duties.push((compound_split().build().unwrap(), duty.clone().mesh_loss("P2", LAW), 2));
     let duty = duty.mesh_loss("P1.sun-planet", LAW).mesh_loss("P1.planet-ring", steep).mesh_loss("P2", steep);
     duties.push((compound_split().build().unwrap(), duty, 2));
@@ -385,7 +397,7 @@ fn load_dependent_batches_are_their_points() {
         let torques = [&t[..]];
         let mut out = vec![vec![f64::NAN; n]; compiled.outputs()];
         let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
-        let odd = compiled.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
+        let odd = compiled.evaluate_batch(&BatchInputs { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
         let mut one = vec![0.0; compiled.outputs()];
         let mut odd_points = 0;
         for i in 0..n {
@@ -407,7 +419,7 @@ fn load_dependent_verdicts() {
     let train = common::train("two-efficiencies");
     let compiled = |exponent: f64, most: [f64; 2]| {
         let law = |coefficient, most| PowerLoss { coefficient, exponent, torque: 1.0, speed: 1.0, most };
-        let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
+        let duty = CompileRequest::new(["input"], ["output"]).output(CompiledOutput::Efficiency);
         train.compile(&duty.mesh_loss("A", law(0.02, most[0])).mesh_loss("B", law(0.08, most[1]))).unwrap()
     };
     let verdict = |compiled: &CompiledTrain, load: f64| {
@@ -423,14 +435,14 @@ fn load_dependent_verdicts() {
     assert!(locked == PointVerdict::Locked && efficiency.is_nan());
     let (w, t) = ([100.0; 3], [-10.0, 10.0, -1.0]);
     let mut column = [0.0; 3];
-    let points = Points { speeds: &[&w], torques: &[&t] };
+    let points = BatchInputs { speeds: &[&w], torques: &[&t] };
     assert_eq!(constant.evaluate_batch(&points, &mut constant.workspace(), &mut [&mut column]), 3);
     assert!(column[1].is_nan() && column[0] > 0.0);
     assert_eq!(verdict(&compiled(0.002, [0.021, 0.083]), -10.0).0, PointVerdict::Multiple);
     assert_eq!(verdict(&compiled(0.05, [0.03, 0.1]), -10.0).0, PointVerdict::Undecided);
 
     // A law that reaches its ceiling.
-    let duty = Duty::new(["sun", "carrier"], ["sun"]).output(Output::Torque("ring".into()));
+    let duty = CompileRequest::new(["sun", "carrier"], ["sun"]).output(CompiledOutput::Torque("ring".into()));
     let split = power_split().build().unwrap().compile(&duty.mesh_loss("P1", PowerLoss { most: 0.03, ..LAW })).unwrap();
     let mut work = split.workspace();
     let mut out = [0.0];
@@ -446,7 +458,7 @@ fn load_dependent_verdicts() {
 #[test]
 fn laws_that_cannot_be() {
     let code = |train: &Train, losses: &[(&str, PowerLoss)]| {
-        let duty = Duty::new(["sun", "carrier"], ["sun"]);
+        let duty = CompileRequest::new(["sun", "carrier"], ["sun"]);
         let duty = losses.iter().fold(duty, |d, (name, law)| d.mesh_loss(name, *law));
         train.compile(&duty).unwrap_err().iter().next().unwrap().code
     };
@@ -478,7 +490,9 @@ fn powers_beyond_floating_point_have_no_efficiency() {
             .set(SetSpec::simple("P1", ("s", 30), (ring, 70), "c").planet(20, 4).mesh_efficiency(0.99))
             .build()
             .expect("a train");
-        let compiled = train.compile(&Duty::new(speeds.clone(), ["s"]).output(Output::Efficiency)).expect("a duty");
+        let compiled = train
+            .compile(&CompileRequest::new(speeds.clone(), ["s"]).output(CompiledOutput::Efficiency))
+            .expect("a duty");
         let mut work = compiled.workspace();
         for torque in [1.0, 1e300, 5.5e307, 1e308, f64::MAX, -5.5e307] {
             for speed in [1.0, 1e-3, 1e3, -1.0] {
@@ -490,7 +504,7 @@ fn powers_beyond_floating_point_have_no_efficiency() {
                 let (columns, torques) = (at.map(|w| [w; 3]), [[torque; 3]]);
                 let given: Vec<&[f64]> = columns[..speeds.len()].iter().map(|c| &c[..]).collect();
                 let mut batch = [0.0; 3];
-                let points = Points { speeds: &given, torques: &[&torques[0]] };
+                let points = BatchInputs { speeds: &given, torques: &[&torques[0]] };
                 compiled.evaluate_batch(&points, &mut work, &mut [&mut batch]);
                 for e in batch {
                     assert!(e.is_nan() || (0.0..=1.0).contains(&e), "{ring} {torque} {speed}: {batch:?}");
