@@ -238,24 +238,30 @@ impl Equilibrium {
         let blocks = blocks(&rows_of).ok_or(Unsolvable::Indeterminate)?;
         let certificate = Certificate::Undecided;
         let mut problem = Self { columns, rows, elements: c.elements.len(), blocks, certificate };
-        let parts = problem.parts();
+        let own;
+        // A single block is the whole.
+        let parts = match problem.blocks.len() {
+            1 => std::slice::from_ref(&problem),
+            _ => {
+                own = problem.parts();
+                &own[..]
+            }
+        };
         if !parts.iter().all(Self::determines_forces) {
             return Err(Unsolvable::Indeterminate);
         }
-        problem.certificate = match parts.iter().map(Self::certify).collect::<Option<Vec<_>>>() {
+        let certificate = match parts.iter().map(Self::certify).collect::<Option<Vec<_>>>() {
             Some(all) if all.contains(&Certificate::Determinants) => Certificate::Determinants,
             Some(_) => Certificate::SpectralRadius,
             None if problem.moving() <= MOST_ENUMERATED => Certificate::Enumeration,
             None => Certificate::Undecided,
         };
+        problem.certificate = certificate;
         Ok(problem)
     }
 
     /// The diagonal blocks as problems of their own.
     fn parts(&self) -> Vec<Self> {
-        if self.blocks.len() == 1 {
-            return vec![self.clone()];
-        }
         let mut row_in = vec![None; self.rows.len()];
         let part = |block: &Block| {
             block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
@@ -283,7 +289,24 @@ impl Equilibrium {
             [low, high] if low != high => low + &((high - low) * Rational::from((j as i64 + 2) * 0x9e37_79b9 + 1)),
             [same, _] => same.clone(),
         };
-        exact::is_regular(&self.exact_matrix(&|_| Rational::ONE)) || exact::is_regular(&self.exact_matrix(&somewhere))
+        let regular = |rho: &dyn Fn(usize) -> Rational| {
+            self.is_regular_modulo(rho) || !exact::determinant(&self.exact_matrix(rho)).is_zero()
+        };
+        regular(&|_| Rational::ONE) || regular(&somewhere)
+    }
+
+    /// Whether elimination modulo a prime shows that the matrix has an inverse; it nearly always does where there is one.
+    fn is_regular_modulo(&self, rho: &dyn Fn(usize) -> Rational) -> bool {
+        let n = self.columns.len();
+        let mut residues = vec![0; n * n];
+        for (j, column) in self.columns.iter().enumerate() {
+            let rho = rho(j);
+            for (r, constant, slope) in &column.entries {
+                let Some(own) = (constant + &(slope * &rho)).modulo() else { return false };
+                residues[*r * n + j] = own;
+            }
+        }
+        exact::residue::rank(&mut residues, n) == n
     }
 
     /// What is known about the number of solutions, before any load is given.

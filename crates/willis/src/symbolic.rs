@@ -58,10 +58,8 @@ impl Monomial {
 
 impl Ord for Monomial {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        let lexicographic = || {
-            let n = self.0.len().max(other.0.len());
-            (0..n).map(|k| other.of(Symbol(k)).cmp(&self.of(Symbol(k)))).find(|o| o.is_ne())
-        };
+        // Of one degree: one that is longer differs within the length of the other.
+        let lexicographic = || other.0.iter().zip(&self.0).map(|(b, a)| b.cmp(a)).find(|o| o.is_ne());
         self.degree().cmp(&other.degree()).then_with(|| lexicographic().unwrap_or(std::cmp::Ordering::Equal))
     }
 }
@@ -150,8 +148,16 @@ impl Polynomial {
 
     /// Symbols that occur.
     pub fn symbols(&self) -> Vec<Symbol> {
-        let n = self.0.keys().map(|m| m.0.len()).max().unwrap_or(0);
-        (0..n).map(Symbol).filter(|s| self.degree(*s) > 0).collect()
+        let mut occurs = vec![false; self.0.keys().map(|m| m.0.len()).max().unwrap_or(0)];
+        for m in self.0.keys() {
+            m.0.iter().zip(&mut occurs).for_each(|(exponent, occurs)| *occurs |= *exponent > 0);
+        }
+        (0..occurs.len()).filter(|&s| occurs[s]).map(Symbol).collect()
+    }
+
+    /// Whether no power of a symbol is above the first.
+    fn is_multilinear(&self) -> bool {
+        self.0.keys().all(|m| m.0.iter().all(|exponent| *exponent <= 1))
     }
 
     /// Highest power of a symbol.
@@ -650,10 +656,10 @@ impl RationalFunction {
         all.retain(|_, e| *e != 0);
         let mut factors: Vec<_> = all.into_iter().collect();
         // Factors are irreducible unless a square occurs in them; only then can two share a part.
-        let coarse = |p: &Polynomial| p.symbols().into_iter().any(|s| p.degree(s) > 1);
+        let coarse: Vec<bool> = factors.iter().map(|(p, _)| !p.is_multilinear()).collect();
         let pair = (0..factors.len()).flat_map(|i| (0..i).map(move |j| (i, j))).find_map(|(i, j)| {
             let ((p, _), (q, _)) = (&factors[i], &factors[j]);
-            if !coarse(p) && !coarse(q) {
+            if !coarse[i] && !coarse[j] {
                 return None;
             }
             let g = p.gcd(q);
@@ -775,10 +781,12 @@ impl RationalFunction {
     /// Other functions in the place of symbols; `None` leaves a symbol as it is. `None` when a
     /// denominator vanishes.
     pub fn substituted(&self, value: &dyn Fn(Symbol) -> Option<Self>) -> Option<Self> {
-        let mut product = Self::from(self.number.clone());
+        // Factors are joined once, at the end.
+        let mut number = self.number.clone();
+        let mut factors: Vec<(Polynomial, i32)> = Vec::with_capacity(self.factors.len());
         for (p, e) in &self.factors {
             if p.symbols().into_iter().all(|s| value(s).is_none()) {
-                product = product.times(&Self { number: Rational::ONE, factors: vec![(p.clone(), *e)] });
+                factors.push((p.clone(), *e));
                 continue;
             }
             let values: BTreeMap<Symbol, Self> =
@@ -796,10 +804,11 @@ impl RationalFunction {
                 return None;
             }
             for _ in 0..e.unsigned_abs() {
-                product = if *e > 0 { product.times(&sum) } else { product.over(&sum) };
+                number = if *e > 0 { &number * &sum.number } else { &number / &sum.number };
             }
+            factors.extend(sum.factors.into_iter().map(|(p, own)| (p, own * e)));
         }
-        Some(product)
+        Some(Self::collect(number, factors))
     }
 
     /// The value for given values of the symbols; `None` on a pole.

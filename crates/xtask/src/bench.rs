@@ -150,7 +150,16 @@ impl Table {
     }
 
     /// `rate`: more is better; else fewer seconds are. A goal in times is on the ratio.
-    fn row(&mut self, what: &str, peer: &str, theirs: Option<f64>, ours: Measured, rate: bool, goal: Goal, limit: &str) {
+    fn row(
+        &mut self,
+        what: &str,
+        peer: &str,
+        theirs: Option<f64>,
+        ours: Measured,
+        rate: bool,
+        goal: Goal,
+        limit: &str,
+    ) {
         let ratio = theirs.map(|theirs| if rate { ours.value / theirs } else { theirs / ours.value });
         let (asked, reached) = match goal {
             Times(x) => (format!("{x} x"), ratio.is_some_and(|r| r >= x)),
@@ -188,7 +197,9 @@ fn run(root: &Path) -> Result<(), String> {
     let python = python(root, &folder)?;
     println!("building …");
     let benches = ["--bench", "compiled", "--bench", "motion", "--bench", "answers"];
-    command(Command::new("cargo").current_dir(root).args(["bench", "-p", "willis", "--no-run", "--quiet"]).args(benches))?;
+    command(
+        Command::new("cargo").current_dir(root).args(["bench", "-p", "willis", "--no-run", "--quiet"]).args(benches),
+    )?;
     let program = ["build", "--profile", "dist", "--quiet", "-p", "willis-cli"];
     command(Command::new("cargo").current_dir(root).args(program))?;
     println!("Willis …");
@@ -198,8 +209,12 @@ fn run(root: &Path) -> Result<(), String> {
     c.current_dir(root).args(["bench", "-p", "willis", "--quiet"]).args(benches).args(criterion);
     command(c.env("CRITERION_HOME", root.join("target/criterion")).stdout(std::process::Stdio::null()))?;
     let mut peers = Vec::new();
-    let scripts: [(&str, &[&str]); 4] =
-        [("map.py", &["--points", "10000000"]), ("automatic.py", &["--points", "100000"]), ("motion.py", &[]), ("study.py", &[])];
+    let scripts: [(&str, &[&str]); 4] = [
+        ("map.py", &["--points", "10000000"]),
+        ("automatic.py", &["--points", "100000"]),
+        ("motion.py", &[]),
+        ("study.py", &[]),
+    ];
     for (script, arguments) in scripts {
         println!("{script} …");
         let mut c = Command::new(&python);

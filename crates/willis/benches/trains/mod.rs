@@ -133,6 +133,6 @@ pub fn chain(sets: usize) -> String {
         );
     }
     text + "\n[[operation]]\nname = \"driven\"\nspeeds = { s0 = \"3000 rpm\" }\ntorques = { s0 = \"10 N m\" }\n\
-         \n[[scenario]]\nname = \"run up\"\nduration = \"1 s\"\n\
+         \n[[scenario]]\nname = \"run up\"\nduration = \"1 s\"\ninitial_speeds = { s0 = \"100 rad/s\" }\n\
          \n[[scenario.source]]\nname = \"engine\"\nmember = \"s0\"\ntorque = \"10 N m\"\n"
 }

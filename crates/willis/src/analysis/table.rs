@@ -177,12 +177,7 @@ impl Drive {
     }
 
     /// The same, when the speeds over that of `from` are known.
-    fn at(
-        c: &Configuration<'_>,
-        transfer: &Transfer,
-        from: MemberId,
-        to: MemberId,
-    ) -> Result<Self, (Verdict, Why)> {
+    fn at(c: &Configuration<'_>, transfer: &Transfer, from: MemberId, to: MemberId) -> Result<Self, (Verdict, Why)> {
         let name = |m: MemberId| c.train.member_name(m).to_owned();
         let motion = Motion {
             speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(),
@@ -331,13 +326,7 @@ fn free(c: &Configuration<'_>, transfer: &Transfer, input: MemberId, output: Mem
 }
 
 /// One-way clutches that are not engaged must not turn the way they block.
-fn one_way_speeds(
-    c: &Configuration<'_>,
-    transfer: &Transfer,
-    place: &str,
-    name: &str,
-    diagnostics: &mut Diagnostics,
-) {
+fn one_way_speeds(c: &Configuration<'_>, transfer: &Transfer, place: &str, name: &str, diagnostics: &mut Diagnostics) {
     let train = c.train;
     let open = (0..train.shift_elements.len()).map(ShiftElementId).filter(|e| !c.engaged.contains(e));
     let elements = open.filter(|e| train.shift_elements[e.0].kind == ShiftElementKind::OneWay);

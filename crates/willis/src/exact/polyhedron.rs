@@ -42,6 +42,11 @@ impl Polyhedron {
         Some(start)
     }
 
+    /// How many numbers it is made of.
+    pub fn size(&self) -> usize {
+        self.rows.iter().map(Vec::len).sum()
+    }
+
     fn value(&self, row: usize) -> &Rational {
         self.rows[row].last().expect("a right side")
     }

@@ -67,6 +67,29 @@ pub fn inverse(a: u64) -> u64 {
     power(a, PRIME - 2)
 }
 
+/// Rank of a matrix of residues, row after row, which is eliminated on the way.
+pub fn rank(matrix: &mut [u64], columns: usize) -> usize {
+    let mut rows: Vec<&mut [u64]> = matrix.chunks_mut(columns.max(1)).collect();
+    let mut rank = 0;
+    for c in 0..columns {
+        let Some(p) = (rank..rows.len()).find(|&r| rows[r][c] != 0) else { continue };
+        rows.swap(p, rank);
+        let (done, rest) = rows.split_at_mut(rank + 1);
+        let pivot = &done[rank];
+        let inverse = if rest.iter().any(|row| row[c] != 0) { inverse(pivot[c]) } else { 0 };
+        for row in rest.iter_mut().filter(|row| row[c] != 0) {
+            let factor = times(row[c], inverse);
+            for k in c..columns {
+                if pivot[k] != 0 {
+                    row[k] = minus(row[k], times(factor, pivot[k]));
+                }
+            }
+        }
+        rank += 1;
+    }
+    rank
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1034,6 +1034,46 @@ fn compare_two_freedoms(name: &str, train: &Train, atlas: &Atlas, random: &mut D
     points
 }
 
+/// Pairs of coupled sets, one behind the other: the sun in common, the first carrier on the second ring.
+fn coupled_pairs(pairs: usize) -> Train {
+    let shaft = |k: usize| if k == 0 { "input".to_owned() } else { format!("c{k}") };
+    let mut members: Vec<String> = (0..=pairs).map(shaft).collect();
+    members.extend((1..=pairs).map(|k| format!("a{k}")));
+    let members: Vec<&str> = members.iter().map(String::as_str).collect();
+    let end = shaft(pairs);
+    let mut spec = Train::builder("pairs in series").members(members).terminals(["input", &end]);
+    for k in 1..=pairs {
+        let (sun, carrier, between) = (shaft(k - 1), shaft(k), format!("a{k}"));
+        let teeth = 61 + 2 * (k as i64 % 9);
+        spec = spec
+            .set(SetSpec::simple(&format!("P{k}"), (&sun, 30), ("frame", teeth), &between).basic_efficiency(0.98))
+            .set(SetSpec::simple(&format!("Q{k}"), (&sun, 33), (&between, 77), &carrier).basic_efficiency(0.97));
+    }
+    spec.build().unwrap()
+}
+
+/// The formula of a train of many pairs is the product of those of the pairs, and finding it does not become hopeless with
+/// their number.
+#[test]
+fn formulas_of_long_trains_are_products_of_short_factors() {
+    let found = |pairs: usize| {
+        let train = coupled_pairs(pairs);
+        let mut atlas = None;
+        let work = measure(|| atlas = Some(as_drawn(&train))).count_total;
+        let atlas = atlas.unwrap();
+        assert_eq!(atlas.regimes.len(), 4, "{pairs} pairs: {:?}", atlas.notes);
+        let sheet = formulas(&train, &from_to(&atlas.state, "input", &format!("c{pairs}"))).unwrap();
+        for r in atlas.regimes.iter().filter(|r| r.inputs == ["input"]) {
+            let [formula] = &sheet.formulas[..] else { panic!("{pairs} pairs: {} formulas", sheet.formulas.len()) };
+            assert_eq!(formula.value(), Some(r.example.efficiency_exact.clone()), "{pairs} pairs");
+        }
+        work
+    };
+    let (few, many) = (found(2), found(16));
+    // Eight times as many pairs: each of eight times as many conditions has eight times as many factors.
+    assert!(many < 200 * few, "{few} allocations for 2 pairs, {many} for 16");
+}
+
 fn signed(random: &mut Dice) -> f64 {
     let size = random.fraction().to_f64();
     if random.below(2) == 0 { size } else { -size }

@@ -8,7 +8,9 @@
 //!
 //! Over the columns of the choice in which all slides forward, every other choice is a principal minor: it keeps the
 //! columns of some places and exchanges those of the others. What is kept then costs nothing, so these minors are looked
-//! at first, and the tree is walked where they leave a sign open.
+//! at first, and the tree is walked where they leave a sign open. Where the matrix of which they are minors is dominated by
+//! its diagonal, under some scale of its columns, all of them are positive (an H-matrix with a positive diagonal is a
+//! P-matrix; Berman and Plemmons 1994, chapter 6): rolling contacts with small losses need no walk, however many they are.
 
 use std::ops::Neg;
 
@@ -103,6 +105,9 @@ struct Tree {
 /// Why the walk ended before its end.
 struct Refused;
 
+/// Up to so many choices are walked without looking for a scale.
+const LEAST_DOMINATED: usize = 1 << 8;
+
 /// None if there are more choices to look at than these.
 pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
     let column = |j: usize| -> Column {
@@ -140,16 +145,27 @@ pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
         }
     }
     let choices = open.iter().fold(1usize, |n, place| n.saturating_mul(place.len()));
+    let two_ways = open.iter().all(|place| place.len() == 2);
     places.extend(open);
-    if choices > most {
+    if choices > most && !two_ways {
         return None;
     }
     let mut tree = Tree { places, sign: 1 };
     if tree.eliminate_shared().is_err() {
         return Some(false);
     }
-    if let Some(minors) = Minors::of(&tree) {
-        return Some(minors);
+    if let Some(matrix) = Exchanges::of(&tree) {
+        if choices > LEAST_DOMINATED && matrix.is_dominated() {
+            return Some(true);
+        }
+        if choices > most {
+            return None;
+        }
+        if let Some(positive) = Minors::of(matrix).and_then(Minors::all) {
+            return Some(positive);
+        }
+    } else if choices > most {
+        return None;
     }
     let mut seen = None;
     Some(tree.walk(&mut seen).is_ok() && seen.is_some())
@@ -213,6 +229,15 @@ impl Tree {
     }
 }
 
+/// The columns that choices exchange, over those of the choice in which all slides forward.
+struct Exchanges {
+    n: usize,
+    /// By rows.
+    matrix: Vec<Tracked>,
+    /// The place of each column.
+    places: Vec<usize>,
+}
+
 /// The choices as principal minors of one matrix. Positions in it are bits of a word.
 struct Minors {
     /// For each column that may be exchanged, those that may not be exchanged with it: of a place one at a time.
@@ -233,11 +258,9 @@ fn positions(mut word: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-impl Minors {
-    /// Whether none of them is negative; none where that is left open, or where not all can slide forward at once.
-    ///
-    /// The columns that all choices share are eliminated already.
-    fn of(tree: &Tree) -> Option<bool> {
+impl Exchanges {
+    /// None where not all can slide forward at once. The columns that all choices share are eliminated already.
+    fn of(tree: &Tree) -> Option<Self> {
         let mut basis: Vec<Column> = vec![];
         let mut exchanged: Vec<Column> = vec![];
         let mut places = vec![];
@@ -255,7 +278,7 @@ impl Minors {
             }
         }
         let n = basis.len();
-        if n >= u64::BITS as usize || basis.iter().any(|column| column.len() != n) {
+        if basis.iter().any(|column| column.len() != n) {
             return None;
         }
         // The exchanged columns over the basis, by elimination of its columns one by one.
@@ -281,12 +304,45 @@ impl Minors {
                 matrix[row * n + k] = column[r];
             }
         }
+        Some(Self { n, matrix, places })
+    }
+
+    /// Whether a scale `x > 0` of the columns makes each entry of the diagonal larger than all others in its row together.
+    fn is_dominated(&self) -> bool {
+        let n = self.n;
+        let at = |r: usize, c: usize| self.matrix[r * n + c];
+        // Largest beside the diagonal, least on it, whatever the rounding was.
+        let least = |r: usize, c: usize| match r == c {
+            true => at(r, c).value - at(r, c).error,
+            false => -(at(r, c).value.abs() + at(r, c).error),
+        };
+        let comparison = nalgebra::DMatrix::from_fn(n, n, least);
+        let Some(scale) = comparison.clone().lu().solve(&nalgebra::DVector::from_element(n, 1.0)) else { return false };
+        // However the scale was found: it shows it, or not.
+        (0..n).all(|r| {
+            let beside: f64 = (0..n).filter(|&c| c != r).map(|c| -comparison[(r, c)] * scale[c]).sum();
+            scale[r] > 0.0 && scale[r].is_finite() && comparison[(r, r)] * scale[r] > beside * (1.0 + 1e-9)
+        })
+    }
+}
+
+impl Minors {
+    /// None where there are more columns than a word has bits.
+    fn of(Exchanges { n, matrix, places }: Exchanges) -> Option<Self> {
+        if n >= u64::BITS as usize {
+            return None;
+        }
         let of = |place: usize| places.iter().enumerate().filter(move |(_, p)| **p == place);
         let beside = places.iter().map(|&place| of(place).fold(0, |word, (k, _)| word | 1 << k)).collect();
         let mut levels = vec![vec![Tracked::default(); n * n]; n + 1];
         levels[0] = matrix;
-        let mut minors = Self { beside, n, levels };
-        minors.are_positive(0, (1 << n) - 1, 0).ok()
+        Some(Self { beside, n, levels })
+    }
+
+    /// Whether none of them is negative; none where that is left open.
+    fn all(mut self) -> Option<bool> {
+        let open = (1 << self.n) - 1;
+        self.are_positive(0, open, 0).ok()
     }
 
     /// Whether no minor is negative that exchanges all of `forced`, whose own entries vanish so far, and any of `open`.

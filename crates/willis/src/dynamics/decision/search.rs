@@ -10,11 +10,14 @@ use super::Decision;
 use super::motion::{Amount, Motion, Verdict};
 use super::problem::Load;
 
-/// Polyhedra that are looked at, at most, to find a motion: a search that is longer says so.
+/// Polyhedra of moderate [`SIZE`] that are looked at, at most, to find a motion: a search that is longer says so.
 const MOST: usize = 20_000;
 
 /// The same where a motion is known and others are looked for: a run waits for that at every change of mode.
 const MOST_PROOF: usize = 500;
+
+/// Numbers of a polyhedron that counts as one. In a larger one there are more pivots, each of more and longer numbers.
+const SIZE: usize = 1000;
 
 /// One over the part of the sizes of an acceleration's terms by which rounding of the loads may change it.
 const NOISE: i64 = 1 << 36;
@@ -61,7 +64,8 @@ impl<'d> Search<'d> {
 
     /// All modes within a polyhedron. False if that was too long.
     fn explore(&mut self, mut p: Polyhedron) -> bool {
-        let Some(left) = self.left.checked_sub(1) else { return false };
+        let times = p.size() / SIZE;
+        let Some(left) = self.left.checked_sub((times * times).max(1)) else { return false };
         self.left = left;
         if let Some(first) = self.found.first()
             && !self.leaves(&mut p, first)
