@@ -94,7 +94,7 @@ pub struct OneKind {
     /// What it is, in one line.
     pub about: String,
     /// Whether only the program `willis` writes it, because the file holds more than text.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default)]
     pub program_only: bool,
 }
 
@@ -182,7 +182,8 @@ impl Question for Export {
             return Err(d.suggest(kind, names).hint(hint).into());
         }
         if kind == FMU.0 {
-            let message = "an FMU holds a library of this machine beside the train, and only the program `willis` packs it";
+            let message =
+                "an FMU holds a library of this machine beside the train, and only the program `willis` packs it";
             let d = Diagnostic::new(Code::Conflict, "", message);
             return Err(d.hint("run `willis export fmu FILE` and name the file to write").into());
         }

@@ -54,9 +54,9 @@ fn sum<'n>(terms: impl IntoIterator<Item = (&'n Rational, &'n str)>) -> String {
     if text.is_empty() { "0".to_owned() } else { text }
 }
 
-/// A product; the second factor in brackets where it is a sum.
+/// A product; the second factor in brackets where it is a sum or begins with a sign.
 fn product(factor: &str, sum: &str) -> String {
-    if sum.contains(' ') { format!("{factor}*({sum})") } else { format!("{factor}*{sum}") }
+    if sum.contains(' ') || sum.starts_with('-') { format!("{factor}*({sum})") } else { format!("{factor}*{sum}") }
 }
 
 /// The value of a curve at `x`, which is not negative.
@@ -116,7 +116,8 @@ fn check(train: &Train, title: &str) -> Result<(), Diagnostics> {
     }
     if let Some(s) = train.shafts().iter().find(|s| s.backlash > 0.0) {
         let contact = if s.contact == Contact::Hard { "hard" } else { "soft" };
-        let message = format!("the shaft {} has backlash with {contact} contact, for which there are no equations", s.name);
+        let message =
+            format!("the shaft {} has backlash with {contact} contact, for which there are no equations", s.name);
         return Err(unfit(message, "export `modelica` or `fmu`, or leave out the backlash"));
     }
     if let Some(table) = train.loss_tables().first() {
@@ -221,7 +222,8 @@ fn one(
             continue;
         }
         let name = own(m);
-        let about = string(&format!("torque on {} from outside, positive along a positive speed", train.member_name(m)));
+        let about =
+            string(&format!("torque on {} from outside, positive along a positive speed", train.member_name(m)));
         top += &format!("  input Real torque_{name}(unit=\"N.m\") {about};\n");
         act(&mut acting, m, "+", &format!("torque_{name}"));
     }
@@ -241,11 +243,8 @@ fn one(
         }
     }
     for i in inertias.iter().filter(|i| i.reference != FRAME) {
-        let about = string(&format!(
-            "inertia of {} against {}",
-            train.member_name(i.member),
-            train.member_name(i.reference)
-        ));
+        let about =
+            string(&format!("inertia of {} against {}", train.member_name(i.member), train.member_name(i.reference)));
         top += &format!("  parameter Real spin_{}(unit=\"kg.m2\") = {} {about};\n", own(i.member), number(i.value));
         let by = difference(i.member, i.reference);
         let rate = sum(by.iter().zip(rates.iter().map(String::as_str)));
