@@ -29,9 +29,9 @@ fn looked_at(done: Result<Imported, Diagnostics>) {
 }
 
 fuzz_target!(|bytes: &[u8]| {
-    if gearsets::is_gearsets(bytes) {
-        let mut parts = bytes.splitn(2, |b| *b == 0);
-        let spec = parts.next().unwrap_or_default();
+    let mut parts = bytes.splitn(2, |b| *b == 0);
+    let spec = parts.next().unwrap_or_default();
+    if gearsets::is_gearsets(spec) {
         looked_at(gearsets::read("file.json", spec, parts.next()));
         return;
     }

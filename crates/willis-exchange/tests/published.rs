@@ -203,11 +203,13 @@ sun = { member = "sun", teeth = 17 }
 planet = { teeth = 22, count = 3 }
 ring = { member = "ring", teeth = 61 }
 carrier = "carrier"
-geometry = { module = "4 mm", width = "50 mm" }
+geometry = { module = "4 mm", width = "50 mm", position = "10 mm" }
 [[bearing]]
 name = "main"
 members = ["carrier"]
 designation = "6210"
+position = "80 mm"
+locates = true
 [[shift_element]]
 name = "B"
 kind = "brake"

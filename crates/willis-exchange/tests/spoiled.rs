@@ -107,9 +107,10 @@ fn looked_at(done: Result<Imported, Diagnostics>) -> bool {
 }
 
 fn read(bytes: &[u8]) -> bool {
-    if gearsets::is_gearsets(bytes) {
-        let mut parts = bytes.splitn(2, |b| *b == 0);
-        let spec = parts.next().unwrap_or_default();
+    // A schedule stands behind a zero byte.
+    let mut parts = bytes.splitn(2, |b| *b == 0);
+    let spec = parts.next().unwrap_or_default();
+    if gearsets::is_gearsets(spec) {
         return looked_at(gearsets::read("file.json", spec, parts.next()));
     }
     let [din, _] = [Convention::Din, Convention::Outward].map(|c| looked_at(rexs::read_as("file.rexs", bytes, c)));

@@ -362,10 +362,10 @@ fn tell(train: &Train, title: &str, missing: &[MemberId], locked: &[&str], notes
     } else {
         "; engaged elements are rigid and open ones carry nothing, one-way clutches too".to_owned()
     };
-    notes.push(format!("{title}: teeth slide at every speed{elements}: no shift, no stick-slip, no rest under load"));
+    notes.push(format!("{title}: teeth always slide{elements}: no shift, no stick-slip, no rest under load"));
     notes.push(
-        "torques act along positive speed; p_ and q_ are torques of the two ends on a mesh. Where friction locks the train the \
-         equations have no solution and a simulator stops"
+        "torques act along positive speed; p_ and q_ are torques of the two ends on a mesh. Where friction locks the train at rest \
+         the equations have no solution, and a simulator fails or comes to no end"
             .to_owned(),
     );
     if !missing.is_empty() {
