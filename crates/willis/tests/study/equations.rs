@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use willis::analysis::{Direction, Selection, Verdict, analyze};
 use willis::dynamics::{Column, Event, Options, Recorder, Sample, simulate};
 use willis::model::Model;
 use willis::study::export::{ExportRequest, export};
@@ -213,9 +214,9 @@ impl Equations {
         own
     }
 
-    /// Everything that follows from states and inputs. Unknown are the rates of the speeds and one torque a mesh; what
+    /// Everything that follows from states and inputs, if Newton's method finds it. Unknown are the rates of the speeds and one torque a mesh; what
     /// is left of the equations is linear in them while the same ends drive, so Newton's method ends after few rounds.
-    fn solved(&self, given: &Values) -> Values {
+    fn solved(&self, given: &Values) -> Option<Values> {
         let unknown: Vec<String> =
             (self.states.iter().filter(|s| s.starts_with("speed_")).map(|s| format!("der({s})")))
                 .chain(self.equations.iter().filter_map(|(left, _)| Some(format!("p_{}", left.strip_prefix("q_")?))))
@@ -241,7 +242,7 @@ impl Equations {
             assert_eq!(left_over.len(), n, "as many equations as unknowns");
             let most = x.iter().fold(1.0f64, |most, x| most.max(x.abs()));
             if left_over.iter().all(|r| r.abs() < 1e-10 * most) {
-                return values;
+                return Some(values);
             }
             let mut rows: Vec<Vec<f64>> = left_over.iter().map(|r| vec![-r]).collect();
             for k in (0..n).rev() {
@@ -253,33 +254,36 @@ impl Equations {
                     row.insert(0, (new - old) / h);
                 }
             }
-            let step = gauss(rows);
+            let step = gauss(rows)?;
             x.iter_mut().zip(step).for_each(|(x, d)| *x += d);
         }
-        panic!("no solution of {:?}", self.equations);
+        None
     }
 }
 
-/// Solves a system whose last column is its right side.
-fn gauss(mut a: Vec<Vec<f64>>) -> Vec<f64> {
+/// Solves a system whose last column is its right side; none where it is singular.
+fn gauss(mut a: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let n = a.len();
     for k in 0..n {
         let best = (k..n).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs())).unwrap();
         a.swap(k, best);
-        assert!(a[k][k].abs() > 0.0, "singular");
+        if a[k][k] == 0.0 {
+            return None;
+        }
         for i in (0..n).filter(|i| *i != k) {
             let factor = a[i][k] / a[k][k];
             let pivot = a[k].clone();
             a[i].iter_mut().zip(pivot).for_each(|(x, p)| *x -= factor * p);
         }
     }
-    (0..n).map(|k| a[k][n] / a[k][k]).collect()
+    Some((0..n).map(|k| a[k][n] / a[k][k]).collect())
 }
 
 #[derive(Default)]
 struct Rows {
     names: Vec<String>,
     rows: Vec<Vec<f64>>,
+    events: Vec<f64>,
 }
 
 impl Recorder for Rows {
@@ -293,7 +297,8 @@ impl Recorder for Rows {
         ControlFlow::Continue(())
     }
 
-    fn event(&mut self, _: &Event) -> ControlFlow<()> {
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.events.push(event.time_s);
         ControlFlow::Continue(())
     }
 }
@@ -316,7 +321,9 @@ fn compared(model: &Model, scenario: &str, sources: &[(&str, &str)]) -> usize {
         };
         // Teeth and drags at rest, or nearly so, are what the equations do not have.
         let modes = rows.names.iter().zip(row).filter(|(name, _)| name.ends_with(".mode"));
-        if modes.clone().any(|(_, mode)| *mode == 0.0) {
+        // At an event a speed is zero but for rounding, and with it the sign of a power.
+        let is_event = rows.events.iter().any(|t| (t - row[0]).abs() < 1e-6);
+        if is_event || modes.clone().any(|(_, mode)| *mode == 0.0) {
             continue;
         }
         let mut given = Values::new();
@@ -333,7 +340,7 @@ fn compared(model: &Model, scenario: &str, sources: &[(&str, &str)]) -> usize {
             given.insert(input.clone(), acts.sum());
         }
         let slow = own.parameters.get("slow").copied().unwrap_or(0.0);
-        let solved = own.solved(&given);
+        let solved = own.solved(&given).unwrap_or_else(|| panic!("{scenario}: no solution at {} s", row[0]));
         if solved.iter().any(|(name, slip)| name.starts_with("slip_") && slip.abs() < slow) {
             continue;
         }
@@ -361,7 +368,7 @@ fn accelerations_and_losses_are_those_of_simulate() {
 /// Each state of every example: read by a parser of others, as many equations as unknowns, and a solution, or a reason.
 #[test]
 fn equations_of_every_example_have_a_solution() {
-    let (mut states, mut refused) = (0, 0);
+    let (mut states, mut simple, mut refused) = (0, 0, 0);
     for (name, text) in examples() {
         let model = Model::from_toml(&text).unwrap_or_else(|e| panic!("{name}: {e}"));
         let request = ExportRequest { all_states: true, ..ExportRequest::default() };
@@ -383,14 +390,19 @@ fn equations_of_every_example_have_a_solution() {
             let given: Values = (own.inputs.iter().enumerate().map(|(k, name)| (name.clone(), 10.0 / (k + 1) as f64)))
                 .chain(own.states.iter().enumerate().map(|(k, name)| (name.clone(), 50.0 / (k + 2) as f64)))
                 .collect();
-            // A train that friction locks has none.
-            if !name.contains("lock") {
-                assert!(own.solved(&given).values().all(|x| x.is_finite()), "{name}");
+            let solved = own.solved(&given);
+            assert!(solved.iter().flat_map(BTreeMap::values).all(|x| x.is_finite()), "{name}");
+            // A train that friction locks one way, or that has several equilibria, may have none here.
+            let is_simple = |way: &Direction| way.verdict == Verdict::Unique;
+            let table = analyze(model.train(), &Selection { operation: None, state: None }).unwrap().ratios;
+            if table.iter().all(|(_, row)| is_simple(&row.drive) && is_simple(&row.coast)) {
+                assert!(solved.is_some(), "{name}: {}", file.text);
+                simple += 1;
             }
             states += 1;
         }
     }
-    assert!(states > 100 && refused < 12, "{states} states, {refused} refused");
+    assert!(states > 100 && simple > 70 && refused < 12, "{states} states, {simple} simple, {refused} refused");
 }
 
 #[test]
