@@ -448,12 +448,10 @@ fn what_equations_cannot_hold_is_refused() {
         "inertias = { motor = \"0.002 kg m^2\" }",
     );
     refused(
-        &bare
-            .replace("terminals = [\"motor\", \"side\", \"load\"]", "terminals = [\"motor\"]")
+        bare.replace("terminals = [\"motor\", \"side\", \"load\"]", "terminals = [\"motor\"]")
             .split("[[scenario]]")
             .next()
-            .unwrap()
-            .to_owned(),
+            .unwrap(),
         "moves no inertia",
     );
 }
