@@ -48,7 +48,7 @@ pub use design::{Design, DesignFound};
 #[cfg(feature = "pictures")]
 pub use draw::{Draw, DrawAnswer, Look};
 pub use explain::Explain;
-pub use export::Export;
+pub use export::{Export, FMU};
 pub use flow::Flow;
 pub use formula::{Formula, FormulaAnswer};
 pub use heat::Heat;

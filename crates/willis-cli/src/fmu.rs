@@ -4,16 +4,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
+use willis_ask::questions::FMU;
 use willis_ask::{Entry, File};
 use willis_fmu::{Interface, LIBRARY, Request, Version, pack};
 
 use crate::Ended;
 use crate::run::{Asked, deliver};
 
-/// How this kind of export is asked for.
-const KIND: &str = "fmu";
-/// Where it stands in the list of kinds.
-const ABOUT: &str = "Functional Mock-up Unit of a scenario, FMI 2.0 or 3.0 (.fmu)";
+/// How this kind of export is asked for, and what it is.
+const KIND: &str = FMU.0;
+const ABOUT: &str = FMU.1;
 /// The place of the runtime, if it is not where it is looked for.
 const PLACE: &str = "WILLIS_FMU_LIBRARY";
 
@@ -48,7 +48,7 @@ pub fn is_asked(matches: &ArgMatches) -> bool {
     matches.get_one::<String>("kind").is_some_and(|kind| kind == KIND)
 }
 
-/// The list of kinds with this one; options of units are refused to the others.
+/// Options of units are refused to the other kinds.
 ///
 /// # Errors
 /// An option of units that is given to another kind.
@@ -57,14 +57,7 @@ pub fn beside(matches: &ArgMatches, answered: impl FnOnce() -> Result<Ended, End
         let name = if *name == "interface" { "kind" } else { name };
         return Err(Ended::Misused(format!("--{name} belongs to `export {KIND}`")));
     }
-    let lists = matches.get_one::<String>("kind").is_none_or(|kind| kind == "list");
-    let plain = matches.get_one::<String>("format").is_none_or(|form| form == crate::form::TEXT);
-    match answered()? {
-        Ended::Answered(out) if lists && plain && !out.is_empty() => {
-            Ok(Ended::Answered(format!("{out}{KIND:<21}{ABOUT}\n")))
-        }
-        other => Ok(other),
-    }
+    answered()
 }
 
 /// Packs a unit.

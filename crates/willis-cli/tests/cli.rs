@@ -659,6 +659,34 @@ fn regress_export_list() {
     snapshot!(list);
 }
 
+#[test]
+fn every_way_to_ask_names_the_same_exports() {
+    let list = answered(&["export", "list"]);
+    let told: Vec<&str> = list.lines().filter_map(|l| l.split_whitespace().next()).collect();
+    let words = |value: &Value| -> Vec<String> {
+        value.as_array().into_iter().flatten().filter_map(|v| v.as_str().map(str::to_owned)).collect()
+    };
+    let json: Value = serde_json::from_str(&answered(&["export", "list", "--format", "json"])).expect("JSON");
+    let kinds = json["kinds"].as_array().expect("kinds");
+    let named: Vec<&str> = kinds.iter().map(|k| k["name"].as_str().expect("a name")).collect();
+    assert_eq!(named, told);
+    // One of them packs a library, which only the program can.
+    let only: Vec<&str> =
+        kinds.iter().filter(|k| k["program_only"] == true).filter_map(|k| k["name"].as_str()).collect();
+    assert_eq!(only, ["fmu"]);
+    let request: Value = serde_json::from_str(&answered(&["schema", "export", "--request"])).expect("a schema");
+    let with_list: Vec<&str> = told.iter().copied().chain(["list"]).collect();
+    assert_eq!(words(&request["properties"]["kind"]["enum"]), with_list);
+    let hint = refused(&run(&["export", "vekto", "examples/zf-8hp70.toml"]), 1);
+    assert!(hint.contains(&format!("the exports are: {}", told.join(", "))), "{hint}");
+    let completions = answered(&["completions", "bash"]);
+    assert!(told.iter().all(|k| completions.contains(k)));
+    // The types of Python.
+    let python = std::fs::read_to_string(root().join("crates/willis-py/python/willis/_questions.py")).expect("a file");
+    let names: Vec<String> = with_list.iter().map(|k| format!("\"{k}\"")).collect();
+    assert!(python.contains(&format!("kind: Literal[{}] | None", names.join(", "))), "{names:?}");
+}
+
 /// Standard output and notes of an export that answers.
 fn exported(arguments: &[&str]) -> String {
     let output = run(&[&["export"], arguments].concat());

@@ -7,6 +7,9 @@ The motion is exact by hand. With k = 1 + 4 eta where the motor drives and 1 + 4
 teeth 20 and 80, eta = 0.97^2), the motor's torque T, its inertia J and that of the arm L:
 
     (L + 5 J k) dw/dt = k T        piecewise constant
+
+`WILLIS_REXS_SCHEMA` names the XML Schema of REXS files, `rexs-file.xsd` of the repository fva-net/rexs-api-java: every example
+that can be exported as REXS is then validated by it.
 """
 
 import csv
@@ -230,6 +233,29 @@ def rumoca(folder: Path):
     return [float(speeds[k]) for k in at], STEPS / took
 
 
+def rumoca_model(file: Path, name: str, starts: dict[str, float], torques: dict[str, str]):
+    """The exported equations, moved by these torques."""
+    import rumoca as engine
+
+    words = [WILLIS, "export", "modelica-equations", file]
+    text = subprocess.run(words, check=True, capture_output=True, text=True).stdout
+    start = ", ".join(f"speed_{member}(start={value})" for member, value in starts.items())
+    moved = "".join(f"  own.torque_{member} = {value};\n" for member, value in torques.items())
+    text += f"model Moved\n  {name} own({start});\nequation\n{moved}end Moved;\n"
+    return engine.Session().loads(text, model="Moved"), engine.SimConfig(rtol=1e-9, atol=1e-12)
+
+
+def rumoca_exported(folder: Path):
+    torques = {"motor": "if time < 0.5 then 2 else -1", "arm": "0"}
+    model, config = rumoca_model(with_arm(folder), "ArmDrive", {}, torques)
+    began = time.perf_counter()
+    result = model.simulate((0.0, 1.0), dt=STEP, config=config)
+    took = time.perf_counter() - began
+    times, speeds = list(result.time), list(result["own.speed_arm"])
+    at = [min(range(len(times)), key=lambda k: abs(times[k] - t)) for t in TIMES]
+    return [float(speeds[k]) for k in at], STEPS / took
+
+
 # What the armature does: its torque passes no teeth. So much may be left where losses are applied.
 ARMATURE = 6e-4
 ENGINES = [
@@ -237,6 +263,7 @@ ENGINES = [
     ("FMPy, FMI 2.0, co-simulation", fmpy_cs, 1e-8),
     ("FMPy, FMI 2.0, model exchange (CVode)", fmpy_me, 1e-6),
     ("rumoca, equations by hand", rumoca, 1e-4),
+    ("rumoca, as exported: modelica-equations", rumoca_exported, 1e-8),
     ("MuJoCo, as exported, no loss", lambda f: mujoco(f, False), None),
     ("MuJoCo, friction of the joint instead", lambda f: mujoco(f, False, (1 - (1 + 4 * ETA) / RATIO) * RATIO * 2.0), None),
     ("MuJoCo, with its user data", lambda f: mujoco(f, True), ARMATURE),
@@ -249,6 +276,87 @@ def lossless() -> tuple[float, float]:
     inertia = ARM + RATIO**2 * MOTOR
     first = 0.5 * RATIO * torque(0.25) / inertia
     return first, first + 0.5 * RATIO * torque(0.75) / inertia
+
+
+# Other checks: each returns what it found in a sentence, and what is wrong with it.
+
+
+def pair(folder: Path):
+    """Two sets, two independent speeds, a shaft that gives and a drag: exported equations in rumoca, beside `simulate`."""
+    file, rows = HERE / "engines-pair.toml", folder / "pair.csv"
+    subprocess.run([WILLIS, "simulate", file, "--samples", "1001", "-o", rows], check=True, capture_output=True)
+    table = list(csv.DictReader(line for line in rows.read_text().splitlines() if not line.startswith("#")))
+    starts = {"motor": 60, "side": 5, "load": 5}
+    torques = {"motor": "if time < 0.5 then 4 else -3", "side": "if time < 0.7 then 6 else -3", "load": "-10"}
+    model, config = rumoca_model(file, "Pair", starts, torques)
+    result = model.simulate((0.0, 1.0), dt=STEP, config=config)
+    worst = 0.0
+    for member in ["motor", "middle", "side", "out", "load"]:
+        own = {round(float(row["time_s"]), 9): float(row[f"{member}.speed_rad_s"]) for row in table}
+        other = {round(t, 9): w for t, w in zip(result.time, result[f"own.speed_{member}"])}
+        common = own.keys() & other.keys()
+        assert len(common) > 900, f"{member}: {len(common)} times in common"
+        worst = max(worst, max(abs(own[t] - other[t]) for t in common) / max(map(abs, own.values())))
+    told = f"rumoca beside simulate, two sets with shaft and drag: at most {worst:.1e} of the largest speed"
+    return told, "" if worst < 1e-6 else "more than 1e-6"
+
+
+def openfast(folder: Path):
+    """The two lines in a file of ElastoDyn, in the hands of the readers and writers that OpenFAST publishes."""
+    from openfast_io.FAST_reader import InputReader_OpenFAST
+    from openfast_io.FAST_writer import InputWriter_OpenFAST
+
+    class Blank(dict):
+        def __missing__(self, key):
+            return "none" if key.endswith(("File", "File1", "File2", "File3", "OutFmt")) else 0
+
+    writer = InputWriter_OpenFAST()
+    writer.FAST_namingOut, writer.FAST_runDirectory = "turbine", str(folder)
+    around = {"DTTorSpr": 8.5e8, "DTTorDmp": 6.2e6}
+    own = Blank(GBoxEff=100.0, GBRatio=97.0, NumBl=3, OutFile=1, **around)
+    writer.fst_vt = {"Fst": {}, "ElastoDyn": own, "outlist": {"ElastoDyn": {}}}
+    writer.write_ElastoDyn()
+    file = folder / "turbine_ElastoDyn.dat"
+    lines = file.read_text().splitlines()
+    text = exported(folder, "openfast").read_text()
+    wanted = {}
+    for line in (line for line in text.splitlines() if not line.startswith("!")):
+        value, name = line.split()[:2]
+        (at,) = [k for k, old in enumerate(lines) if old.split()[1:2] == [name]]
+        lines[at], wanted[name] = line, float(value)
+    file.write_text("\n".join(lines) + "\n")
+    reader = InputReader_OpenFAST()
+    reader.FAST_directory = str(folder)
+    reader.read_ElastoDyn(str(file))
+    read = {name: reader.fst_vt["ElastoDyn"][name] for name in [*wanted, *around]}
+    told = f"openfast-io reads GBoxEff {read['GBoxEff']} and GBRatio {read['GBRatio']} from ElastoDyn's file"
+    # By hand: 1 + 80/20 = 5, and from the slow to the fast end 5/(1 + 4/eta).
+    right = read == wanted | around and read["GBRatio"] == RATIO
+    right = right and abs(read["GBoxEff"] - 100 * RATIO / (1 + 4 / ETA)) < 1e-9
+    return told, "" if right else f"not {wanted}"
+
+
+def rexs(folder: Path):
+    """Examples as REXS, validated by the schema of others, if it is named."""
+    import xmlschema
+
+    place = os.environ.get("WILLIS_REXS_SCHEMA")
+    if place is None:
+        return "REXS: not validated, WILLIS_REXS_SCHEMA names no rexs-file.xsd", ""
+    schema, valid, refused, wrong = xmlschema.XMLSchema(place), 0, 0, []
+    for file in sorted((HERE.parents[2] / "examples").glob("*.toml")):
+        out = folder / f"{file.stem}.rexs"
+        done = subprocess.run([WILLIS, "export", "rexs", file, "-o", out], capture_output=True)
+        if done.returncode != 0:
+            refused += 1
+            continue
+        errors = [f"{file.name}: {e.reason}" for e in schema.iter_errors(str(out))]
+        wrong += errors[:3]
+        valid += not errors
+    return f"REXS: {valid} exported examples are valid by {Path(place).name}, {refused} have no place in REXS", "; ".join(wrong)
+
+
+CHECKS = [("rumoca", pair), ("OpenFAST", openfast), ("REXS", rexs)]
 
 
 def main() -> int:
@@ -275,6 +383,16 @@ def main() -> int:
                 off = [abs(a / b - 1) for a, b in zip(speeds, free)]
                 if max(off) > 1e-6:
                     wrong.append(f"{title}: {max(off):.1e} from the motion without loss")
+        print()
+        for title, check in CHECKS:
+            try:
+                told, fault = check(Path(name))
+            except ImportError as why:
+                print(f"{title}: not here: {why}")
+                continue
+            print(told)
+            if fault:
+                wrong.append(f"{told}: {fault}")
     print("\n".join(["", *wrong]) if wrong else "")
     return 1 if wrong else 0
 

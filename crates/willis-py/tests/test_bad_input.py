@@ -27,6 +27,7 @@ ASKS: list[Callable[[willis.Train], Any]] = [
     lambda t: t.compile("3", mesh_loss={"P1": {"coefficient": -1.0}}),
     lambda t: t.compile("3", drag={"input": ("a", 1)}),
     lambda t: t.export("nothing"),
+    lambda t: t.export("fmu"),
     lambda t: t.simulate("x"),
     lambda t: t.cycle(profile={"a": [1, 2], "b": [1]}),
     lambda t: t.cycle(profile="/nowhere.csv"),

@@ -1,4 +1,5 @@
-//! Exports in the hands of engines that others wrote: MuJoCo, Drake, FMPy and rumoca, in an environment of their own.
+//! Exports in the hands of engines and readers that others wrote: MuJoCo, Drake, FMPy, rumoca, openfast-io, and the XML Schema of
+//! REXS where `WILLIS_REXS_SCHEMA` names it, in an environment of their own.
 //!
 //! No step of `ci`: Drake alone is more than a hundred megabytes.
 
@@ -8,7 +9,7 @@ use crate::program::build_willis;
 use crate::step::{Outcome, outcome};
 
 /// The engines. What is newer than these versions is tried too: its deviations are in the table.
-const TOOLS: &str = "mujoco>=4.0 drake>=1.51 rumoca fmpy>=0.3.20 numpy";
+const TOOLS: &str = "mujoco>=4.0 drake>=1.51 rumoca fmpy>=0.3.20 numpy openfast-io xmlschema";
 
 /// Loads, moves, compares.
 const SCRIPT: &str = "crates/willis-cli/tests/engines.py";

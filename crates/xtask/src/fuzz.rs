@@ -1,4 +1,4 @@
-//! Random texts: train files begun from the examples, and every other text that is read.
+//! Random texts: train files begun from the examples, every other text that is read, and files of other programs.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use crate::examples::example_files;
 use crate::step::{Outcome, outcome};
 
 /// The targets, each in a file of its own.
-const TARGETS: &[&str] = &["analyze", "texts"];
+const TARGETS: &[&str] = &["analyze", "texts", "imports"];
 
 /// Readers of the target `texts` that take a whole train file.
 const WHOLE: &[char] = &['d', 'v'];
@@ -23,7 +23,7 @@ fn seed(context: &Context) -> Result<(), String> {
         fs::create_dir_all(&corpus).map_err(|e| format!("{}: {e}", corpus.display()))?;
         Ok(corpus)
     };
-    let [analyze, texts] = [folder(TARGETS[0])?, folder(TARGETS[1])?];
+    let [analyze, texts, imports] = [folder(TARGETS[0])?, folder(TARGETS[1])?, folder(TARGETS[2])?];
     for file in example_files(context)? {
         let name = Path::new(&file).file_name().expect("a file").to_string_lossy().into_owned();
         let text = fs::read_to_string(context.root.join(&file)).map_err(|e| format!("{file}: {e}"))?;
@@ -33,10 +33,13 @@ fn seed(context: &Context) -> Result<(), String> {
             fs::write(texts.join(format!("{reader}-{name}")), format!("{reader}{text}")).map_err(fail)?;
         }
     }
-    for entry in fs::read_dir(context.root.join("fuzz/seeds/texts")).map_err(|e| format!("fuzz/seeds: {e}"))? {
-        let entry = entry.map_err(|e| format!("fuzz/seeds: {e}"))?;
-        fs::copy(entry.path(), texts.join(entry.file_name()))
-            .map_err(|e| format!("{}: {e}", entry.path().display()))?;
+    for (target, corpus) in [(TARGETS[1], texts), (TARGETS[2], imports)] {
+        let seeds = context.root.join("fuzz/seeds").join(target);
+        for entry in fs::read_dir(&seeds).map_err(|e| format!("{}: {e}", seeds.display()))? {
+            let entry = entry.map_err(|e| format!("{}: {e}", seeds.display()))?;
+            fs::copy(entry.path(), corpus.join(entry.file_name()))
+                .map_err(|e| format!("{}: {e}", entry.path().display()))?;
+        }
     }
     Ok(())
 }

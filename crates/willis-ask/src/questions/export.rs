@@ -93,6 +93,22 @@ pub struct OneKind {
     pub name: String,
     /// What it is, in one line.
     pub about: String,
+    /// Whether only the program `willis` writes it, because the file holds more than text.
+    #[serde(default)]
+    pub program_only: bool,
+}
+
+/// The kind that the program alone writes, because it packs a library of the machine: its name and one line about it.
+///
+/// Every way to ask lists it; who asks for it here is told where it is had.
+pub const FMU: (&str, &str) = ("fmu", "Functional Mock-up Unit of a scenario, FMI 2.0 or 3.0 (.fmu)");
+
+/// Every kind that can be asked for, in the order of the list: name and one line about it.
+pub(super) fn kinds() -> Vec<(&'static str, &'static str)> {
+    let kinds = KINDS.iter().map(|k| (k.id, k.about));
+    #[cfg(feature = "import")]
+    let kinds = kinds.chain(willis_exchange::c::KINDS).chain([REXS]);
+    kinds.chain([FMU]).collect()
 }
 
 /// The format that a crate of its own writes.
@@ -142,9 +158,7 @@ impl Question for Export {
             assumptions: vec![],
             kinds: vec![],
         };
-        let kinds = KINDS.iter().map(|k| (k.id, k.about));
-        #[cfg(feature = "import")]
-        let kinds = kinds.chain(willis_exchange::c::KINDS).chain([REXS]);
+        let kinds = kinds();
         let kind = match (self.kind.as_deref().filter(|k| *k != "list"), of) {
             (Some(kind), [_]) => kind,
             (Some(kind), _) => {
@@ -153,15 +167,25 @@ impl Question for Export {
                 return Err(d.hint("name a train file after the kind of export").into());
             }
             (None, _) => {
-                let kinds = kinds.map(|(name, about)| OneKind { name: name.to_owned(), about: about.to_owned() });
-                return Ok(ExportAnswer { kinds: kinds.collect(), ..answer(None) });
+                let one = |(name, about): (&str, &str)| OneKind {
+                    name: name.to_owned(),
+                    about: about.to_owned(),
+                    program_only: name == FMU.0,
+                };
+                return Ok(ExportAnswer { kinds: kinds.into_iter().map(one).collect(), ..answer(None) });
             }
         };
-        if !kinds.clone().any(|(name, _)| name == kind) {
-            let names: Vec<&str> = kinds.map(|k| k.0).collect();
+        if !kinds.iter().any(|(name, _)| *name == kind) {
+            let names: Vec<&str> = kinds.iter().map(|k| k.0).collect();
             let d = Diagnostic::new(Code::UnknownName, "", format!("there is no export `{kind}`"));
-            let hint = format!("the exports are: {}; the command line also has fmu", names.join(", "));
-            return Err(d.suggest(kind, names.into_iter().chain(["fmu"])).hint(hint).into());
+            let hint = format!("the exports are: {}", names.join(", "));
+            return Err(d.suggest(kind, names).hint(hint).into());
+        }
+        if kind == FMU.0 {
+            let message =
+                "an FMU holds a library of this machine beside the train, and only the program `willis` packs it";
+            let d = Diagnostic::new(Code::Conflict, "", message);
+            return Err(d.hint("run `willis export fmu FILE` and name the file to write").into());
         }
         let request = ExportRequest {
             state: self.state.clone(),

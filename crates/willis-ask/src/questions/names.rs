@@ -13,10 +13,7 @@ pub fn figures() -> Vec<&'static str> {
 
 /// Kinds of exports; `list` lists them.
 pub fn exports() -> Vec<&'static str> {
-    let kinds = willis::study::export::KINDS.iter().map(|k| k.id);
-    #[cfg(feature = "import")]
-    let kinds = kinds.chain(willis_exchange::c::KINDS.map(|k| k.0)).chain(["rexs"]);
-    kinds.chain(["list"]).collect()
+    super::export::kinds().into_iter().map(|k| k.0).chain(["list"]).collect()
 }
 
 /// Cases of published numbers.

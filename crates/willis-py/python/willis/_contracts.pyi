@@ -7429,6 +7429,9 @@ class ExportOneKind(Record):
     @property
     def about(self) -> str:
         """What it is, in one line."""
+    @property
+    def program_only(self) -> bool:
+        """Whether only the program ``willis`` writes it, because the file holds more than text."""
 
 class ExportAnswer(Answer):
     """Files for another program, or the kinds there are."""

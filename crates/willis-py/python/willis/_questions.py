@@ -1078,7 +1078,7 @@ class Questions:
 
     def export(
         self,
-        kind: Literal["csv", "vecto", "modelica-loss-table", "modelica", "simscape", "mujoco", "drake", "openfast", "c", "simulink", "rexs", "list"] | None = None,
+        kind: Literal["csv", "vecto", "modelica-loss-table", "modelica", "modelica-equations", "simscape", "mujoco", "drake", "openfast", "c", "simulink", "rexs", "fmu", "list"] | None = None,
         *,
         state: str | None = None,
         all_states: bool | None = None,

@@ -10,6 +10,7 @@
 mod carried;
 mod csv;
 mod drake;
+mod equations;
 mod loss_table;
 mod map;
 mod modelica;
@@ -180,6 +181,12 @@ pub const KINDS: &[Kind] = &[
         id: "modelica",
         about: "the train as a model of Modelica's Rotational library (.mo)",
         write: modelica::write,
+        comment: ["  // ", ""],
+    },
+    Kind {
+        id: "modelica-equations",
+        about: "a gear in motion as equations of Modelica, without any library (.mo)",
+        write: equations::write,
         comment: ["  // ", ""],
     },
     Kind {

@@ -7,6 +7,7 @@ mod carried;
 mod compare;
 mod cycle;
 mod effort;
+mod equations;
 mod export;
 mod sensitivity;
 mod sweep;

@@ -278,18 +278,13 @@ fn wrong(code: Code, message: impl Into<String>, hint: impl Into<String>) -> Dia
     Diagnostic::new(code, "", message).hint(hint).into()
 }
 
-/// The gears that are asked for, with their axes, and what must be told of the choice.
-pub(super) fn gears(train: &Train, request: &Asked) -> Result<(Vec<Gear>, Vec<String>), Diagnostics> {
-    let operation = match &request.operation {
-        None => None,
-        Some(name) => Some(train.find_operation(name)?),
-    };
-    check(train, request)?;
+/// The states that are asked for; `None` for the train as drawn.
+pub(super) fn chosen(train: &Train, request: &Asked) -> Result<Vec<Option<usize>>, Diagnostics> {
     let names: Vec<&str> = train.states.iter().map(|s| s.name.as_str()).collect();
-    let chosen: Vec<Option<usize>> = match (&request.state, operation.and_then(|o| o.state)) {
+    Ok(match (&request.state, request.at.as_ref().and_then(|o| o.state)) {
         (Some(name), own) => {
             let k = train.find_state(name)?;
-            if let (Some(o), true) = (operation, own != Some(k)) {
+            if let (Some(o), true) = (&request.at, own != Some(k)) {
                 let message = format!("the operation `{}` does not run in state `{name}`", o.name);
                 return Err(wrong(Code::UnknownSelection, message, "leave out one of the two"));
             }
@@ -304,7 +299,18 @@ pub(super) fn gears(train: &Train, request: &Asked) -> Result<(Vec<Gear>, Vec<St
             let hint = format!("name one of {}; or take all of them", names.join(", "));
             return Err(wrong(Code::UnknownSelection, message, hint));
         }
+    })
+}
+
+/// The gears that are asked for, with their axes, and what must be told of the choice.
+pub(super) fn gears(train: &Train, request: &Asked) -> Result<(Vec<Gear>, Vec<String>), Diagnostics> {
+    let operation = match &request.operation {
+        None => None,
+        Some(name) => Some(train.find_operation(name)?),
     };
+    check(train, request)?;
+    let names: Vec<&str> = train.states.iter().map(|s| s.name.as_str()).collect();
+    let chosen = chosen(train, &Asked { at: operation.cloned(), ..request.clone() })?;
     // The shift table alone: operations have no part in it.
     let bare = Train { operations: vec![], ..train.clone() };
     let table = analyze(&bare, &Selection::default())?;

@@ -22,7 +22,7 @@ use super::{Asked, Export, ExportedFile};
 const ROTATIONAL: &str = "Modelica.Mechanics.Rotational";
 
 /// `-85/23`, and an integer without a denominator.
-fn fraction(r: &Rational) -> String {
+pub(super) fn fraction(r: &Rational) -> String {
     r.to_fraction().trim_end_matches("/1").to_owned()
 }
 
@@ -36,7 +36,7 @@ fn level(curve: &Curve) -> String {
 }
 
 /// The mesh efficiencies that laws give in the operation that was asked for; none without one, or without laws.
-fn at_the_load(
+pub(super) fn at_the_load(
     train: &Train,
     request: &Asked,
     notes: &mut Vec<String>,

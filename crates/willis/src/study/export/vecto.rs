@@ -110,6 +110,7 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
         &format!("# {}: ratio {} = {} (input speed over output speed)\n", gear.title(), gear.exact, number(gear.ratio));
     text +=
         &format!("# input: {}, output: {}; output torque = (input torque - loss) * ratio\n", gear.input, gear.output);
+    text += "# positive input torque drives, negative input torque coasts; the loss is never negative\n";
     if let (true, Some(oil)) = (gear.is_physical(), train.lubrication()) {
         text += &format!("# oil temperature {} degC\n", short(temperature.unwrap_or(oil.temperature) - 273.15));
     }
