@@ -482,7 +482,7 @@ const STYLE: &str = "
   border-radius: 4px; background: var(--bg); color: var(--fg); }
 #found { position: absolute; right: 1em; top: 100%; width: min(36em, 92vw); max-height: 70vh; overflow: auto; z-index: 200;
   background: var(--bg); color: var(--fg); border: 1px solid var(--icons); font-size: 1.4rem; }
-#found a { display: block; padding: .4em .8em; }
+#found a { display: block; padding: .4em .8em; color: var(--links); text-decoration: none; }
 #found a:hover, #found a:focus { background: var(--theme-hover); }
 #found small { display: block; opacity: .75; color: var(--fg); }
 #mdbook-menu-bar, #menu-bar { position: relative; }
