@@ -74,6 +74,30 @@ test("a dot is dragged, all others follow, and the drag is one step", async () =
   assert.deepEqual(page.faults, []);
 });
 
+test("on a phone a dot follows the finger, and the page stays where it is", async () => {
+  const phone = await studio(at, { width: 390, height: 844, hasTouch: true, isMobile: true });
+  await open(phone, "fva-planetary-stage.toml");
+  const start = await state(phone);
+  const sun = phone.locator('#levers svg.fig [role=slider][id^="levers-speed-"][data-member="sun"]').first();
+  await sun.evaluate((e) => e.scrollIntoView({ block: "center", inline: "center" }));
+  const place = await sun.boundingBox();
+  const [x, y] = [place.x + place.width / 2, place.y + place.height / 2];
+  const finger = await phone.context().newCDPSession(phone);
+  const touch = (type, x) => finger.send("Input.dispatchTouchEvent", { type, touchPoints: type === "touchEnd" ? [] : [{ x, y }] });
+  const scrolled = () => phone.evaluate(() => [...document.querySelectorAll("*")].map((e) => e.scrollLeft + e.scrollTop).filter(Boolean));
+  const before = await scrolled();
+  await touch("touchStart", x);
+  for (let k = 1; k <= 10; k++) await touch("touchMove", x - 4 * k);
+  await touch("touchEnd");
+  await shown(phone);
+  const speed = (s) => s.analysis.operations[0].speeds_rad_s.sun;
+  const there = speed(await state(phone));
+  assert.ok(there < 0.9 * speed(start), `${speed(start)} rad/s became ${there}`);
+  assert.deepEqual(await scrolled(), before);
+  assert.deepEqual(phone.faults, []);
+  await phone.context().close();
+});
+
 test("Escape takes a drag back", async () => {
   await gear("3");
   const start = await state(page);

@@ -47,21 +47,27 @@ const COPIES: &[&str] = &["crates/willis-casebook/data/examples", "crates/willis
 const FIGURES: &[(&str, &[&str])] = &[
     (
         "book/src/figures/prius-regimes.svg",
-        &["regimes", "examples/prius-p112.toml", "--terminals", "engine,ring,mg1", "--map"],
+        &["draw", "regimes", "examples/prius-p112.toml", "--terminals", "engine,ring,mg1", "--theme", "auto", "-o"],
     ),
     (
         "book/src/figures/compound-regimes.svg",
         &[
+            "draw",
             "regimes",
             "examples/compound-split.toml",
             "--terminals",
             "engine,wheels,mg_a,mg_b",
             "--balance",
             "mg_a,mg_b",
-            "--map",
+            "--theme",
+            "auto",
+            "-o",
         ],
     ),
-    ("book/src/figures/herringbone-flow.svg", &["flow", "examples/wang-herringbone.toml", "--output"]),
+    (
+        "book/src/figures/herringbone-flow.svg",
+        &["draw", "flow", "examples/wang-herringbone.toml", "--theme", "auto", "-o"],
+    ),
     (
         "book/src/figures/shift-handed-over.svg",
         &[
@@ -100,7 +106,7 @@ const FIGURES: &[(&str, &[&str])] = &[
     ),
     (
         "book/src/figures/galvagno-coast-down.svg",
-        &["simulate", "examples/galvagno-coast-down.toml", "--scenario", "coast down", "--plot"],
+        &["draw", "time", "examples/galvagno-coast-down.toml", "--part", "coast down", "--theme", "auto", "-o"],
     ),
     (
         "book/src/figures/9g-schemes.svg",

@@ -81,8 +81,7 @@ pub(crate) fn copy(from: &Path, to: &Path) -> Result<(), String> {
 
 /// Copies a folder with all that is in it and kept.
 pub(crate) fn copy_folder(from: &Path, to: &Path, kept: &dyn Fn(&Path) -> bool) -> Result<(), String> {
-    for entry in fs::read_dir(from).map_err(|e| format!("{}: {e}", from.display()))? {
-        let path = entry.map_err(|e| format!("{}: {e}", from.display()))?.path();
+    for path in entries(from)? {
         let to = to.join(path.file_name().expect("an entry has a name"));
         match (kept(&path), path.is_dir()) {
             (false, _) => {}
@@ -121,6 +120,8 @@ const VALIDATION: &[(&str, &str)] = &[
 fn assemble(context: &Context, pages: &Path) -> Result<usize, String> {
     let root = &context.root;
     copy_folder(&root.join("book/src"), pages, &|_| true)?;
+    dark_pictures(&pages.join("figures"))?;
+    link_validation(pages)?;
     copy_folder(&root.join("validation"), &pages.join("validation"), &|_| true)?;
     copy_folder(&root.join("examples"), &pages.join("examples"), &|_| true)?;
     let mut summary =
@@ -153,6 +154,46 @@ fn assemble(context: &Context, pages: &Path) -> Result<usize, String> {
         write(&pages.join(as_index(file)), &as_index(&text))?;
     }
     Ok(trains)
+}
+
+/// Pictures that were drawn for paper alone get a dark look of their own, which keeps their hues.
+fn dark_pictures(folder: &Path) -> Result<(), String> {
+    const DARK: &str =
+        "<style>@media (prefers-color-scheme: dark) { :root { filter: invert(0.93) hue-rotate(180deg); } }</style>";
+    for path in entries(folder)? {
+        if path.extension().is_none_or(|e| e != "svg") {
+            continue;
+        }
+        let text = read(&path)?;
+        let open = text.find("<svg").and_then(|at| Some(at + text[at..].find('>')? + 1));
+        if let (Some(open), false) = (open, text.contains("prefers-color-scheme")) {
+            write(&path, &format!("{}\n{DARK}{}", &text[..open], &text[open..]))?;
+        }
+    }
+    Ok(())
+}
+
+/// In the repository chapters name the validation pages by their files; in the site they are links.
+fn link_validation(pages: &Path) -> Result<(), String> {
+    for path in entries(pages)? {
+        if path.extension().is_none_or(|e| e != "md") {
+            continue;
+        }
+        let text = read(&path)?;
+        let linked = VALIDATION.iter().fold(text.clone(), |text, (title, file)| {
+            text.replace(&format!("`{file}`"), &format!("[{title}]({})", as_index(file)))
+        });
+        if linked != text {
+            write(&path, &linked)?;
+        }
+    }
+    Ok(())
+}
+
+/// What is in a folder.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let fail = |e: std::io::Error| format!("{}: {e}", folder.display());
+    fs::read_dir(folder).map_err(fail)?.map(|e| Ok(e.map_err(fail)?.path())).collect()
 }
 
 /// Names and links of pages: a page of a folder is its index.
@@ -441,17 +482,32 @@ const STYLE: &str = "
   border-radius: 4px; background: var(--bg); color: var(--fg); }
 #found { position: absolute; right: 1em; top: 100%; width: min(36em, 92vw); max-height: 70vh; overflow: auto; z-index: 200;
   background: var(--bg); color: var(--fg); border: 1px solid var(--icons); font-size: 1.4rem; }
-#found a { display: block; padding: .4em .8em; }
+#found a { display: block; padding: .4em .8em; color: var(--links); text-decoration: none; }
 #found a:hover, #found a:focus { background: var(--theme-hover); }
 #found small { display: block; opacity: .75; color: var(--fg); }
 #mdbook-menu-bar, #menu-bar { position: relative; }
 .gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(15em, 1fr)); gap: 1.5em; }
 .gallery img { width: 100%; height: 11em; object-fit: contain; object-position: left bottom; }
 .content img { max-width: 100%; }
+/* Pictures, outputs and tables are wide; lines of text are not. */
+:root { --content-max-width: 1000px; }
+.content main > :is(p, ul, ol, blockquote, .footnote-definition):not(:has(img)) { max-width: 46em; }
+.content pre code { font-size: .82em; }
+.content table { display: block; overflow-x: auto; font-size: .94em; }
 html.navy, html.coal, html.ayu { --links: #6db8e3; --sidebar-active: #6db8e3; }
+html.rust { --links: #1d5c80; --inline-code-color: #65650a; }
+html.coal { --table-header-bg: hsl(0, 0%, 20%); }
+.menu-title { color: var(--fg); }
 .content thead:not(:has(th:not(:empty))) { display: none; }
-.content table { display: block; overflow-x: auto; }
-@media (max-width: 600px) { .menu-title { display: none; } #find { width: 34vw; } }
+/* The arrows beside the text only where there is room for them. */
+@media (max-width: 1560px) { .nav-wide-wrapper { display: none; } .nav-wrapper { display: block; } }
+@media (max-width: 600px) {
+  .menu-title { display: none; }
+  #find { width: 34vw; }
+  .content pre code { font-size: .72em; }
+  .content table { font-size: .85em; }
+  .content table :is(td, th) { padding: .2em .6em; }
+}
 ";
 
 /// A search over headings and texts, and pictures that open alone, where a phone shows them too small. The index is a script,
@@ -624,8 +680,7 @@ fn check(site: &Path, api: bool) -> Result<usize, String> {
 
 /// Pages of ours: those of the library's documentation are checked by their own tool, and the studio is a program.
 fn html_files(folder: &Path, all: &mut Vec<PathBuf>) -> Result<(), String> {
-    for entry in fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))? {
-        let path = entry.map_err(|e| format!("{}: {e}", folder.display()))?.path();
+    for path in entries(folder)? {
         let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_owned();
         if path.is_dir() && name != "api" {
             html_files(&path, all)?;

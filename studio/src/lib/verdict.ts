@@ -16,10 +16,10 @@ export function verdict(): Verdict {
     const ratio = Object.values(store.view?.analysis?.ratios ?? {})[0];
     return { word: "No operating point.", told: ratio?.no_ratio ?? "Give a speed and a torque.", kind: "warn" };
   }
-  const proof = op.certificate?.unique_for_every_load ? "proved for every load" : "found by trying every case";
+  const proof = op.certificate?.unique_for_every_load ? "proved for any load in these directions" : "found by trying every case";
   switch (op.verdict) {
     case "unique":
-      return { word: "Moves.", told: `Exactly one equilibrium, ${proof}.`, kind: "good" };
+      return { word: "Moves.", told: `One equilibrium, ${proof}.`, kind: "good" };
     case "multiple":
       return { word: `${op.solutions.length} answers.`, told: op.reason ?? "Friction decides between them.", kind: "warn" };
     case "locked":

@@ -82,9 +82,11 @@ pub fn certificate(v: Verdict, c: &CertificateReport) -> &'static str {
         (Verdict::Locked, _, Certificate::Undecided) => "not proved",
         (Verdict::Locked, ..) => "proved: no equilibrium drives a load",
         (_, true, Certificate::SpectralRadius) => {
-            "proved: exactly one equilibrium for every load (spectral radius below one)"
+            "proved: exactly one equilibrium for any load in these directions of rotation (spectral radius below one)"
         }
-        (_, true, _) => "proved: exactly one equilibrium for every load (all determinants of sign patterns agree)",
+        (_, true, _) => {
+            "proved: exactly one equilibrium for any load in these directions of rotation (all determinants of sign patterns agree)"
+        }
         (_, false, Certificate::Enumeration) => "not unique for every load; for this one every sign pattern was tried",
         _ => "uniqueness undecided",
     }

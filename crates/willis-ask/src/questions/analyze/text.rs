@@ -202,9 +202,13 @@ fn verdicts(s: &StateReport) -> String {
 fn certificate(c: &CertificateReport) -> String {
     match (c.unique_for_every_load, c.method) {
         (true, Certificate::SpectralRadius) => {
-            "exactly one equilibrium for every load (spectral-radius certificate)".into()
+            "exactly one equilibrium for any load in these directions of rotation (spectral-radius certificate)".into()
         }
-        (true, _) => "exactly one equilibrium for every load (all sign patterns' determinants agree)".into(),
+        (true, _) => {
+            "exactly one equilibrium for any load in these directions of rotation (all sign patterns' determinants \
+                      agree)"
+                .into()
+        }
         (false, Certificate::Enumeration) => {
             "not unique for every load; for this one every sign pattern was tried".into()
         }
