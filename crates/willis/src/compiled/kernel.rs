@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::duty::{PointVerdict, Points, ShaftDrag};
+use super::duty::PointVerdict;
 use super::iterated::{Iterated, Lanes};
 use super::parts::{CHUNK, MOST_FEATURES, MOST_LINEAR, MOST_MOVING, Parts, Target, TorqueFrom};
 use super::passes::{combine, dot, lane};
@@ -149,6 +149,11 @@ impl General {
     /// What it was made of.
     pub fn parts(&self) -> &Parts {
         &self.p
+    }
+
+    /// How many elements have two values of ρ and relative motion.
+    pub fn moving(&self) -> usize {
+        self.moving.len()
     }
 
     pub fn certified(&self) -> bool {
@@ -337,12 +342,12 @@ impl General {
         true
     }
 
-    /// A chunk of points; returns how many are not unique. Linear outputs go where `to` says, the rest
-    /// into the chunk's arrays.
+    /// A chunk of points, whose torques and speeds are `given`; returns how many are not unique. Linear outputs go where
+    /// `to` says, the rest into the chunk's arrays.
     pub fn chunk(
         &self,
         arch: pulp::Arch,
-        points: &Points<'_>,
+        given: &[&[f64]],
         range: Range<usize>,
         w: &mut Chunk,
         hint: &mut usize,
@@ -351,9 +356,7 @@ impl General {
         let n = range.len();
         let (l, d) = (self.p.torques, self.p.speeds);
         let mut inputs: [&[f64]; MOST_FEATURES] = [&[]; MOST_FEATURES];
-        for (slot, s) in inputs.iter_mut().zip(points.torques.iter().chain(points.speeds)) {
-            *slot = &s[range.clone()];
-        }
+        inputs[..given.len()].copy_from_slice(given);
         // Out of `w` while the features point into it.
         let mut signs = std::mem::take(&mut w.signs);
         for (out, row) in signs.iter_mut().zip(&self.p.signs) {
@@ -637,78 +640,33 @@ lanes! {
         }
         partial.iter().sum::<f64>() + rest.iter().sum::<f64>()
     }
-    /// Sum, least and greatest; least and greatest leave NaN out.
-    Extremes<'a> { x: &'a [f64] } -> [f64; 3] {
-        const LANES: usize = 32;
-        let (chunks, rest) = x.as_chunks::<LANES>();
-        let mut sum = [0.0; LANES];
-        let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    /// Adds to partial sums; the extremes of `least`, `most` and the values, if they are other than `least` and `most`.
+    /// NaN is in the sums alone.
+    Add<'a> { x: &'a [f64], sum: &'a mut [f64; SUMS], least: f64, most: f64 } -> Option<[f64; 2]> {
+        let (chunks, rest) = x.as_chunks::<SUMS>();
+        let mut own = *sum;
+        let (mut below, mut above) = ([least; SUMS], [most; SUMS]);
         for c in chunks {
-            for k in 0..LANES {
-                sum[k] += c[k];
-                least[k] = if c[k] < least[k] { c[k] } else { least[k] };
-                most[k] = if c[k] > most[k] { c[k] } else { most[k] };
+            for k in 0..SUMS {
+                own[k] += c[k];
+                below[k] = if c[k] < below[k] { c[k] } else { below[k] };
+                above[k] = if c[k] > above[k] { c[k] } else { above[k] };
             }
         }
         for (k, x) in rest.iter().enumerate() {
-            sum[k] += x;
-            least[k] = if *x < least[k] { *x } else { least[k] };
-            most[k] = if *x > most[k] { *x } else { most[k] };
+            own[k] += x;
+            below[k] = if *x < below[k] { *x } else { below[k] };
+            above[k] = if *x > above[k] { *x } else { above[k] };
         }
-        [
-            sum.iter().sum(),
-            least.iter().copied().fold(f64::INFINITY, f64::min),
-            most.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        ]
-    }
-    /// Loss and efficiency of a power split.
-    SinglePowers<'a, const LOADED> {
-        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
-    } -> () {
-        let n = torque.len();
-        let (w0, w1) = (&w0[..n], &w1[..n]);
-        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
-        let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            loss[i] = p.loss;
-            efficiency[i] = p.efficiency;
+        *sum = own;
+        let mut found = 0u64;
+        for k in 0..SUMS {
+            found |= u64::from(below[k] != least) | u64::from(above[k] != most);
         }
-    }
-    /// All results of a power split.
-    SingleAll<'a, const LOADED> {
-        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64],
-        first: &'a mut [f64], second: &'a mut [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
-    } -> () {
-        let n = torque.len();
-        let (w0, w1) = (&w0[..n], &w1[..n]);
-        let (first, second) = (&mut first[..n], &mut second[..n]);
-        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
-        let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            first[i] = p.torque[0];
-            second[i] = p.torque[1];
-            loss[i] = p.loss;
-            efficiency[i] = p.efficiency;
-        }
-    }
-    /// One result of a power split: 0 and 1 the torques, 2 the loss, 3 the efficiency.
-    SingleOne<'a, const LOADED, const WHAT> {
-        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], out: &'a mut [f64],
-    } -> () {
-        let n = out.len();
-        let (w0, w1, torque) = (&w0[..n], &w1[..n], &torque[..n]);
-        let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            out[i] = match WHAT {
-                0 => p.torque[0],
-                1 => p.torque[1],
-                2 => p.loss,
-                _ => p.efficiency,
-            };
-        }
+        (found != 0).then(|| {
+            let least = below.iter().fold(least, |m, x| if *x < m { *x } else { m });
+            [least, above.iter().fold(most, |m, x| if *x > m { *x } else { m })]
+        })
     }
 }
 
@@ -770,178 +728,15 @@ fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, fi
     by_count!(x.len(), go(arch, x, row, sigma, side, first, worst));
 }
 
-/// Sum, least and greatest of a slice.
-pub(super) fn extremes(arch: pulp::Arch, x: &[f64]) -> [f64; 3] {
-    arch.dispatch(Extremes { x })
+/// Partial sums of many points.
+pub(super) const SUMS: usize = 32;
+
+/// Adds to partial sums; the extremes of all, if a value is below `least` or above `most`.
+pub(super) fn add(arch: pulp::Arch, x: &[f64], sum: &mut [f64; SUMS], [least, most]: [f64; 2]) -> Option<[f64; 2]> {
+    arch.dispatch(Add { x, sum, least, most })
 }
 
 /// Sum of a slice.
 pub(super) fn sum(arch: pulp::Arch, x: &[f64]) -> f64 {
     arch.dispatch(Sum { x })
-}
-
-/// One lossy element, two prescribed speeds on two of its three shafts, one torque: the power split
-/// of a hybrid, in one fused pass.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Single {
-    /// Speed of the third shaft over those of the first two.
-    third: [f64; 2],
-    /// Relative speed of end p over the first two, with the sign of the force per loaded torque.
-    drive: [f64; 2],
-    /// Torques of the two open shafts per torque that reaches the set: p drives, q drives, at rest.
-    gain: [[f64; 3]; 2],
-    drag: [ShaftDrag; 3],
-    /// Place (of the three shafts) of the loaded shaft and of the open ones.
-    loaded: usize,
-    open: [usize; 2],
-}
-
-/// Where the results of [`Single`] go.
-#[derive(Default)]
-pub(super) struct SingleOut<'o> {
-    pub torque: [Option<&'o mut [f64]>; 2],
-    pub loss: Option<&'o mut [f64]>,
-    pub efficiency: Option<&'o mut [f64]>,
-}
-
-/// Results at one point.
-struct SinglePoint {
-    torque: [f64; 2],
-    loss: f64,
-    efficiency: f64,
-}
-
-impl Single {
-    pub fn new(g: &General, loaded: usize, open: [usize; 2], drag: [ShaftDrag; 3]) -> Option<Self> {
-        let p = &g.p;
-        if p.columns.len() != 1 || g.moving.len() != 1 || !p.certified || p.torques != 1 || p.speeds != 2 {
-            return None;
-        }
-        let element = &p.columns[0];
-        // Terminals of the balance: the loaded one first, then the open ones.
-        let mut rows = [[0.0; 2]; 3];
-        for (t, place) in p.terminals.iter().zip([loaded, open[0], open[1]]) {
-            rows[place] = [t.speed[0], t.speed[1]];
-        }
-        if rows[0] != [1.0, 0.0] || rows[1] != [0.0, 1.0] {
-            return None;
-        }
-        let &[(_, constant, slope)] = &element.entries[..] else { return None };
-        let force = |rho: f64| 1.0 / (constant + slope * rho);
-        let rho = [element.rho[0], element.rho[1], 1.0];
-        // Certified: the coefficient has one sign, so the sign of the force is that of the torque.
-        let side = force(1.0).signum();
-        let gain = [0, 1].map(|o| rho.map(|r| force(r) * (p.per_force[0][0][o] + r * p.per_force[0][1][o])));
-        Some(Self {
-            third: rows[2],
-            drive: [element.relative[0] * side, element.relative[1] * side],
-            gain,
-            drag,
-            loaded,
-            open,
-        })
-    }
-
-    /// One point. Scalars throughout: an array indexed in here would become a gather.
-    #[inline(always)]
-    fn point<const LOADED: usize>(&self, w0: f64, w1: f64, torque: f64) -> SinglePoint {
-        let Self { third: [t0, t1], drive: [r0, r1], gain: [[ap, aq, ar], [bp, bq, br]], drag: [d0, d1, d2], .. } =
-            *self;
-        let w2 = t0 * w0 + t1 * w1;
-        let drag = |d: ShaftDrag, w: f64| (if w == 0.0 { 0.0 } else { d.coulomb.copysign(w) }) + d.viscous * w;
-        let (d0, d1, d2) = (drag(d0, w0), drag(d1, w1), drag(d2, w2));
-        // Loaded shaft first, then the open ones in order.
-        let ((wl, dl), (wa, da), (wb, db)) = match LOADED {
-            0 => ((w0, d0), (w1, d1), (w2, d2)),
-            1 => ((w1, d1), (w0, d0), (w2, d2)),
-            _ => ((w2, d2), (w0, d0), (w1, d1)),
-        };
-        let reaches = torque - dl;
-        let drive = reaches * (r0 * w0 + r1 * w1);
-        let pick = |p: f64, q: f64, rest: f64| {
-            let moving = if drive > 0.0 { p } else { q };
-            if drive == 0.0 { rest } else { moving }
-        };
-        let ta = pick(ap, aq, ar) * reaches + da;
-        let tb = pick(bp, bq, br) * reaches + db;
-        let (pl, pa, pb) = (torque * wl, ta * wa, tb * wb);
-        let pos = |p: f64| if p > 0.0 { p } else { 0.0 };
-        let power_in = pos(pl) + pos(pa) + pos(pb);
-        let loss = pl + pa + pb;
-        // Powers beyond floating point have no efficiency: nothing times infinity is no number.
-        let efficiency = if power_in > 0.0 { (power_in - loss) / power_in + loss * 0.0 } else { 0.0 };
-        SinglePoint { torque: [ta, tb], loss, efficiency }
-    }
-
-    /// The open shafts in ascending place, as [`Single::point`] numbers them.
-    fn ordered(&self) -> Self {
-        let mut s = *self;
-        if s.open[0] > s.open[1] {
-            s.open.swap(0, 1);
-            s.gain.swap(0, 1);
-        }
-        s
-    }
-
-    pub fn run(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], mut out: SingleOut<'_>) {
-        let s = self.ordered();
-        if self.open[0] > self.open[1] {
-            out.torque.swap(0, 1);
-        }
-        match s.loaded {
-            0 => s.go::<0>(arch, w0, w1, torque, out),
-            1 => s.go::<1>(arch, w0, w1, torque, out),
-            _ => s.go::<2>(arch, w0, w1, torque, out),
-        }
-    }
-
-    fn go<const LOADED: usize>(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], out: SingleOut<'_>) {
-        let SingleOut { torque: [first, second], loss, efficiency } = out;
-        let set = self;
-        match (first, second, loss, efficiency) {
-            (Some(first), Some(second), Some(loss), Some(efficiency)) => {
-                arch.dispatch(SingleAll::<LOADED> { set, w0, w1, torque, first, second, loss, efficiency });
-            }
-            (None, None, Some(loss), Some(efficiency)) => {
-                arch.dispatch(SinglePowers::<LOADED> { set, w0, w1, torque, loss, efficiency });
-            }
-            (first, second, loss, efficiency) => {
-                if let Some(out) = first {
-                    arch.dispatch(SingleOne::<LOADED, 0> { set, w0, w1, torque, out });
-                }
-                if let Some(out) = second {
-                    arch.dispatch(SingleOne::<LOADED, 1> { set, w0, w1, torque, out });
-                }
-                if let Some(out) = loss {
-                    arch.dispatch(SingleOne::<LOADED, 2> { set, w0, w1, torque, out });
-                }
-                if let Some(out) = efficiency {
-                    arch.dispatch(SingleOne::<LOADED, 3> { set, w0, w1, torque, out });
-                }
-            }
-        }
-    }
-
-    /// A chunk into the chunk's arrays.
-    pub fn chunk(
-        &self,
-        arch: pulp::Arch,
-        points: &Points<'_>,
-        range: Range<usize>,
-        w: &mut Chunk,
-        only_efficiency: bool,
-    ) {
-        let n = range.len();
-        let efficiency = Some(&mut w.efficiency[..n]);
-        let out = match &mut w.linear[..] {
-            [first, second, ..] if !only_efficiency => SingleOut {
-                torque: [Some(&mut first[..n]), Some(&mut second[..n])],
-                loss: Some(&mut w.loss[..n]),
-                efficiency,
-            },
-            _ => SingleOut { efficiency, ..SingleOut::default() },
-        };
-        let (speeds, torques) = (points.speeds, points.torques);
-        self.run(arch, &speeds[0][range.clone()], &speeds[1][range.clone()], &torques[0][range], out);
-    }
 }
