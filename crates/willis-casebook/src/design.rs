@@ -9,7 +9,7 @@ use willis::work::Serial;
 use willis_synthesis::schemes::{HybridWish, Known, ModeKind, Search, Wish, hybrids};
 use willis_synthesis::teeth::{Design, DesignAnswer, Request};
 
-use crate::{Cell, Gate, Report, Section, answer, train};
+use crate::{AcceptanceBound, Cell, Report, Section, answer, train};
 
 const AOD: &str = include_str!("../data/design/ford-aod.toml");
 const SIMPSON: &str = include_str!("../data/design/simpson.toml");
@@ -34,7 +34,7 @@ impl<'a> Counts<'a> {
 
     fn equal(&mut self, what: &str, expected: u64, ours: u64) {
         let exact = [expected as f64; 2];
-        let gate = Gate::new(format!("{}: {what}", self.case), expected.to_string(), ours as f64, exact);
+        let gate = AcceptanceBound::new(format!("{}: {what}", self.case), expected.to_string(), ours as f64, exact);
         self.section.row([
             self.case.as_str().into(),
             what.into(),
@@ -48,7 +48,7 @@ impl<'a> Counts<'a> {
     fn near(&mut self, what: &str, expected: f64, ours: Option<f64>, within: f64) {
         let ours = ours.unwrap_or(f64::NAN);
         let bounds = [expected - within, expected + within];
-        let gate = Gate::new(format!("{}: {what}", self.case), format!("{expected}"), ours, bounds);
+        let gate = AcceptanceBound::new(format!("{}: {what}", self.case), format!("{expected}"), ours, bounds);
         self.section.row([
             self.case.as_str().into(),
             what.into(),
@@ -318,7 +318,7 @@ fn production(report: &mut Report, [aod, eight]: &[DesignAnswer; 2]) {
         &["transmission", "question", "as built", "Willis", "verdict"],
     );
     let mut row = |name: &str, question: &str, built: String, ours: String, holds: bool| {
-        let gate = Gate::new(format!("{name}: {question}"), &built, f64::from(u8::from(holds)), [1.0, 1.0]);
+        let gate = AcceptanceBound::new(format!("{name}: {question}"), &built, f64::from(u8::from(holds)), [1.0, 1.0]);
         s.row([name.into(), question.into(), built.into(), ours.into(), gate.verdict().into()]);
         report.gates.push(gate);
     };
@@ -441,7 +441,7 @@ fn optima(report: &mut Report) {
             .into(),
     ];
     report.sections.push(s);
-    report.gates.push(Gate::new(
+    report.gates.push(AcceptanceBound::new(
         "3K, best train: efficiency forward of its train file",
         "26755/31878",
         best[1],

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use serde::Deserialize;
 
-use crate::{Cell, Gate, Report, Section, train};
+use crate::{AcceptanceBound, Cell, Report, Section, train};
 use willis::contract::Format;
 use willis::dynamics::offset::{Driver, external, internal};
 use willis::dynamics::{
@@ -316,8 +316,8 @@ fn largest(all: impl IntoIterator<Item = f64>) -> f64 {
     all.into_iter().fold(0.0, |a: f64, b| if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) })
 }
 
-fn at_most(what: impl Into<String>, ours: f64, most: f64) -> Gate {
-    Gate::new(what, "0", ours, [0.0, most])
+fn at_most(what: impl Into<String>, ours: f64, most: f64) -> AcceptanceBound {
+    AcceptanceBound::new(what, "0", ours, [0.0, most])
 }
 
 /// One of the fourteen.
@@ -672,7 +672,12 @@ fn transients(report: &mut Report) {
             report.gates.push(at_most(format!("transient {name}: {kind}, relative"), error, 1e-8));
         }
         let finished = if same && done.outcome == Outcome::Finished { 1.0 } else { 0.0 };
-        report.gates.push(Gate::new(format!("transient {name}: events the same"), "1", finished, [1.0, 1.0]));
+        report.gates.push(AcceptanceBound::new(
+            format!("transient {name}: events the same"),
+            "1",
+            finished,
+            [1.0, 1.0],
+        ));
         report.gates.push(at_most(format!("transient {name}: event times, s"), late, 1e-8));
         report.gates.push(at_most(format!("transient {name}: energy residual"), lost, 1e-9));
     }
@@ -817,7 +822,7 @@ fn jamming(report: &mut Report) {
         ]);
     }
     report.sections.push(section);
-    report.gates.push(Gate::new("jamming: verdicts that are right, of 4", "4", right as f64, [4.0, 4.0]));
+    report.gates.push(AcceptanceBound::new("jamming: verdicts that are right, of 4", "4", right as f64, [4.0, 4.0]));
 }
 
 pub(crate) fn report() -> Report {

@@ -27,7 +27,7 @@ type File = (&'static str, String);
 
 /// A case.
 #[derive(Clone, Copy, Debug)]
-pub struct Case {
+pub struct ValidationCase {
     /// Its name.
     pub name: &'static str,
     /// What it compares.
@@ -37,26 +37,26 @@ pub struct Case {
 }
 
 /// Every case.
-pub const CASES: &[Case] = &[
-    Case {
+pub const CASES: &[ValidationCase] = &[
+    ValidationCase {
         name: "wang-2020",
         about: "herringbone planetary gearbox, Wang and others 2020: every table of the paper",
         run: wang_2020::report,
         data: Some(wang_2020::data),
     },
-    Case {
+    ValidationCase {
         name: "losses",
         about: "losses: measurements, other programs, worked examples, with gates and misses",
         run: losses::report,
         data: None,
     },
-    Case {
+    ValidationCase {
         name: "galvagno",
         about: "motion of a lossy planetary set, Galvagno 2010: fourteen power flows, transients, offsets, jamming",
         run: galvagno::report,
         data: None,
     },
-    Case {
+    ValidationCase {
         name: "design",
         about: "designs: counts of whole spaces, production tooth numbers, published optima, what published counts leave open",
         run: design::report,
@@ -95,7 +95,7 @@ pub struct Report {
     /// In the order to be read.
     pub sections: Vec<Section>,
     /// What must hold.
-    pub gates: Vec<Gate>,
+    pub gates: Vec<AcceptanceBound>,
 }
 
 impl Contract for Report {
@@ -134,9 +134,10 @@ pub enum Cell {
 
 /// A comparison with a bound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+// The schema keeps the name that is published.
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Gate"))]
 #[non_exhaustive]
-pub struct Gate {
+pub struct AcceptanceBound {
     /// What is compared.
     pub what: String,
     /// As printed or measured.
@@ -268,7 +269,7 @@ impl Section {
     }
 }
 
-impl Gate {
+impl AcceptanceBound {
     fn new(what: impl Into<String>, printed: impl Into<String>, ours: f64, [low, high]: [f64; 2]) -> Self {
         let holds = (low..=high).contains(&ours);
         let ours = Some(ours).filter(|x| x.is_finite());
@@ -307,7 +308,7 @@ impl fmt::Display for Report {
             &["Some bounds were set with the other number known. A miss stays a miss, with its cause."],
             &["what", "expected", "Willis", "from", "to", "verdict"],
         );
-        let size = |g: &Gate| g.low.abs().max(g.high.abs()).max(1e-12);
+        let size = |g: &AcceptanceBound| g.low.abs().max(g.high.abs()).max(1e-12);
         for g in &self.gates {
             // Four digits of the bound.
             let decimals = (4 - size(g).log10().floor() as i32).clamp(0, 9) as usize;

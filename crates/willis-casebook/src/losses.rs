@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::{Cell, Gate, Report, Section, answer, decimal, solution, train, with};
+use crate::{AcceptanceBound, Cell, Report, Section, answer, decimal, solution, train, with};
 use willis::analysis::SolutionReport;
 use willis::catalogue::bearing::{self, Bearing, Kind, Seal, SealKind};
 use willis::catalogue::oil::{self, Base};
@@ -53,7 +53,8 @@ impl<'a> Sheet<'a> {
 
     /// A comparison with the bounds `low` to `high`.
     fn band(&mut self, what: &str, printed: (f64, usize), ours: f64, [low, high]: [f64; 2], cause: Option<&str>) {
-        let mut gate = Gate::new(format!("{}: {what}", self.case), decimal(printed.0, printed.1), ours, [low, high]);
+        let mut gate =
+            AcceptanceBound::new(format!("{}: {what}", self.case), decimal(printed.0, printed.1), ours, [low, high]);
         if let Some(cause) = cause {
             gate = gate.because(cause);
         }

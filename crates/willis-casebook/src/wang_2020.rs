@@ -6,14 +6,14 @@ use std::sync::OnceLock;
 
 use serde::Deserialize;
 
-use crate::{Gate, Report, Section, answer, decimal, solution, train, with};
+use crate::{AcceptanceBound, Report, Section, answer, decimal, solution, train, with};
 use willis::analysis::SolutionReport;
 use willis::catalogue::bearing::{self, Bearing, Kind};
 use willis::catalogue::oil::Base;
 use willis::contract::Format;
 use willis::diagnostic::Code;
 use willis::losses::bearing::{BearingDuty, Skf, Skf6000, Supply};
-use willis::operating_point::{LossKind, Regime};
+use willis::operating_point::{LossKind, LubricationRegime};
 use willis::train::Train;
 
 /// The gearbox with teeth, oil and bearings.
@@ -268,7 +268,7 @@ fn kinematics(report: &mut Report, rated: &Loss) {
         let ours = rated.rpm(members[k]);
         let printed = paper().speeds[k];
         s.row([names[k].into(), (printed, 1).into(), (exact[k], 4).into(), (ours, 4).into()]);
-        report.gates.push(Gate::new(
+        report.gates.push(AcceptanceBound::new(
             format!("speed of {}, rpm", names[k]),
             decimal(printed, 1),
             ours,
@@ -317,7 +317,12 @@ fn meshes(report: &mut Report, rated: &Loss) {
             ]);
             let what = format!("Table 4, n = {n}, {column}: loss by the law of the paper, %");
             let gate = |tolerance| {
-                Gate::new(what.as_str(), decimal(printed, 2), ours, [printed - tolerance, printed + tolerance])
+                AcceptanceBound::new(
+                    what.as_str(),
+                    decimal(printed, 2),
+                    ours,
+                    [printed - tolerance, printed + tolerance],
+                )
             };
             report.gates.push(match k {
                 // Half a unit of the last digit more, for the rounding of the table.
@@ -327,13 +332,13 @@ fn meshes(report: &mut Report, rated: &Loss) {
         }
     }
     let rms = (squares / 16.0).sqrt();
-    report.gates.push(Gate::new(
+    report.gates.push(AcceptanceBound::new(
         "Table 4, all 16 with the windage slip: rms of the rest, points",
         "0",
         rms,
         [0.0, 0.0125],
     ));
-    report.gates.push(Gate::new(
+    report.gates.push(AcceptanceBound::new(
         "Table 4, all 16 with the windage slip: largest rest, points",
         "0",
         worst,
@@ -381,10 +386,10 @@ fn overall(report: &mut Report, rated: &Loss) {
         ]);
         let near = |x: f64| [row.overall - x, row.overall + x];
         let what = |name: &str| format!("overall, n = {}: {name}, %", row.planets);
-        report.gates.push(Gate::new(what("reading B"), decimal(row.overall, 2), reading_b, near(0.01)));
-        report.gates.push(Gate::new(what("reading C"), decimal(row.overall, 2), reading_c, near(0.01)));
+        report.gates.push(AcceptanceBound::new(what("reading B"), decimal(row.overall, 2), reading_b, near(0.01)));
+        report.gates.push(AcceptanceBound::new(what("reading C"), decimal(row.overall, 2), reading_c, near(0.01)));
         report.gates.push(
-            Gate::new(what("torque balance"), decimal(row.overall, 2), 100.0 * a * balance, near(0.01))
+            AcceptanceBound::new(what("torque balance"), decimal(row.overall, 2), 100.0 * a * balance, near(0.01))
                 .because("the paper's totals are no torque balance of its own table"),
         );
     }
@@ -437,7 +442,7 @@ fn shares(report: &mut Report, rated: &Loss) {
         "The windage slip of Table 4 is {windage:.1} % of the loss of three planets; printed 5.3. In the right units, as \
          computed above, windage is the largest loss of this gearbox without shrouds."
     ));
-    report.gates.push(Gate::new("share of windage with the slip, n = 3, %", "5.3", windage, [4.8, 5.8]));
+    report.gates.push(AcceptanceBound::new("share of windage with the slip, n = 3, %", "5.3", windage, [4.8, 5.8]));
 
     let fast = &paper().fast;
     let r = fast.speed / low.speed;
@@ -453,7 +458,7 @@ fn shares(report: &mut Report, rated: &Loss) {
          number and validates nothing.",
         fast.speed, fast.efficiency
     ));
-    report.gates.push(Gate::new(
+    report.gates.push(AcceptanceBound::new(
         "5 planets, 12300 rpm, scaled at constant torque, %",
         decimal(fast.efficiency, 1),
         torque,
@@ -488,7 +493,12 @@ fn bearings(report: &mut Report, rated: &Loss) {
         let text: Vec<_> = found.iter().map(ToString::to_string).collect();
         s.row([name.into(), if text.is_empty() { "nothing".into() } else { text.join("; ").into() }]);
     }
-    report.gates.push(Gate::new("the catalogue objects to the bearing, remarks", "-", said as f64, [1.0, 20.0]));
+    report.gates.push(AcceptanceBound::new(
+        "the catalogue objects to the bearing, remarks",
+        "-",
+        said as f64,
+        [1.0, 20.0],
+    ));
     if let (Some(nu), Some(big)) = (bearing::find("NU 1022"), bearing::find("NU 2322")) {
         let mm = |b: &Bearing| format!("{:.0} x {:.0} x {:.0}", b.bore * 1e3, b.outside_diameter * 1e3, b.width * 1e3);
         s.points.push(format!(
@@ -506,7 +516,7 @@ fn bearings(report: &mut Report, rated: &Loss) {
         100.0 * paper_bearing(0.08 / 870.0, true),
         100.0 * paper_bearing(0.08 / 870.0, false)
     ));
-    report.gates.push(Gate::new("eta_IN-2 with the unit slip: loss, %", "0.02", slip, [0.015, 0.025]));
+    report.gates.push(AcceptanceBound::new("eta_IN-2 with the unit slip: loss, %", "0.02", slip, [0.015, 0.025]));
     s.points.push(format!(
         "Right: the sun of equally spaced planets carries no radial load; planets carry twice the tangential force and \
          their own weight. All bearings together lose {:.2} % of the input, nearly all at the planets of stage 1, \
@@ -578,7 +588,7 @@ fn planets(report: &mut Report) {
             ]);
             if let Some([e, ..]) = notes(name, n) {
                 let what = format!("{name}, n = {n}: efficiency, %");
-                let gate = Gate::new(what, decimal(e, 2), 100.0 * l.efficiency, [e - 0.3, e + 0.3]);
+                let gate = AcceptanceBound::new(what, decimal(e, 2), 100.0 * l.efficiency, [e - 0.3, e + 0.3]);
                 // Six planets: twice as many meshes to roll in, and the difference that is told below.
                 report.gates.push(if n == 6 && laws == rolling {
                     gate.because(
@@ -590,7 +600,7 @@ fn planets(report: &mut Report) {
             }
             if let (BEARING, Some([.., b])) = (name, notes(name, n)) {
                 let what = format!("{name}, n = {n}: loss of bearings, %");
-                report.gates.push(Gate::new(what, decimal(b, 2), 100.0 * l.bearing, [b - 0.01, b + 0.01]));
+                report.gates.push(AcceptanceBound::new(what, decimal(b, 2), 100.0 * l.bearing, [b - 0.01, b + 0.01]));
             }
             assert!(l.converged, "{name}, {n} planets");
             first.get_or_insert(l);
@@ -599,7 +609,12 @@ fn planets(report: &mut Report) {
         let six = Variant { planets: 6, laws, replace }.rated();
         if laws.contains(&SHARED) {
             let growth = six.sliding / three.sliding;
-            report.gates.push(Gate::new(format!("{name}: tooth loss, 6 over 3 planets"), "1", growth, [0.98, 1.0]));
+            report.gates.push(AcceptanceBound::new(
+                format!("{name}: tooth loss, 6 over 3 planets"),
+                "1",
+                growth,
+                [0.98, 1.0],
+            ));
         }
     }
     s.points.extend(
@@ -634,7 +649,7 @@ fn impossible(report: &mut Report) {
         "Five planets do not assemble. Willis: \"{}\". The paper computes them all the same.",
         remark.unwrap_or("no remark")
     ));
-    report.gates.push(Gate::new(
+    report.gates.push(AcceptanceBound::new(
         "five planets are refused equal spacing, remarks",
         "-",
         f64::from(u8::from(remark.is_some())),
@@ -665,7 +680,7 @@ fn impossible(report: &mut Report) {
         "Boundary and mixed lubrication (figures 14 and 15) do not occur with these data: the smallest lambda of six \
          planets is {lowest:.1}."
     ));
-    report.gates.push(Gate::new("smallest lambda, n = 6", "> 3", lowest, [3.0, 1e3]));
+    report.gates.push(AcceptanceBound::new("smallest lambda, n = 6", "> 3", lowest, [3.0, 1e3]));
     report.sections.push(s);
 }
 
@@ -762,7 +777,8 @@ pub(crate) fn data() -> Vec<(&'static str, String)> {
         let schlenk = Variant { planets: 3, replace: &replace, ..Variant::default() }.rated();
         let laws = [("mesh_friction", "coulomb-by-regime")];
         let regime = Variant { planets: 3, replace: &replace, laws: &laws }.rated();
-        let of = |r: Regime| schlenk.film_ratio.iter().filter(|x| Regime::of(**x) == r).count() as f64;
+        let of =
+            |r: LubricationRegime| schlenk.film_ratio.iter().filter(|x| LubricationRegime::of(**x) == r).count() as f64;
         let [a, b, c, d] = schlenk.film_ratio;
         lubrication.row(&[
             um.parse().unwrap_or(f64::NAN),
@@ -770,9 +786,9 @@ pub(crate) fn data() -> Vec<(&'static str, String)> {
             b,
             c,
             d,
-            of(Regime::Boundary),
-            of(Regime::Mixed),
-            of(Regime::Full),
+            of(LubricationRegime::Boundary),
+            of(LubricationRegime::Mixed),
+            of(LubricationRegime::Full),
             schlenk.friction[0],
             regime.friction[0],
             100.0 * schlenk.efficiency,

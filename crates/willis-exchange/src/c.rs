@@ -8,7 +8,7 @@
 use std::fmt::Write as _;
 
 use willis::analysis::frozen;
-use willis::compiled::{Duty, TableOutput, Tables};
+use willis::compiled::{CompileRequest, TableOutput, Tables};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, is_printable};
 use willis::model::Model;
 use willis::study::export::{Export, ExportRequest, ExportedFile, FilesAndNotes, export_with};
@@ -142,7 +142,7 @@ fn tables(
     torques: &[String],
     fixed: &[String],
 ) -> Result<Tables, Diagnostics> {
-    let mut duty = Duty::new(speeds.iter().map(String::as_str), torques.iter().map(String::as_str));
+    let mut duty = CompileRequest::new(speeds.iter().map(String::as_str), torques.iter().map(String::as_str));
     if let Some(state) = state {
         duty = duty.state(state);
     }

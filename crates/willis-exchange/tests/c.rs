@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use willis::analysis::operate;
-use willis::compiled::{Duty, Output, PointVerdict};
+use willis::compiled::{CompileRequest, CompiledOutput, PointVerdict};
 use willis::model::Model;
 use willis::study::export::{Export, ExportRequest};
 use willis::train::{Operation, Train};
@@ -185,15 +185,15 @@ fn beside(
             }
             points.push(point);
         }
-        let mut duty = Duty::new(speeds.iter().copied(), torques.iter().copied());
+        let mut duty = CompileRequest::new(speeds.iter().copied(), torques.iter().copied());
         if let Some(state) = state {
             duty = duty.state(state);
         }
         let terminals: Vec<&str> = train.terminals().iter().map(|t| train.member_name(*t)).collect();
         for t in &terminals {
-            duty = duty.output(Output::Torque((*t).into()));
+            duty = duty.output(CompiledOutput::Torque((*t).into()));
         }
-        let compiled = train.compile(&duty.output(Output::Loss).output(Output::Efficiency)).unwrap();
+        let compiled = train.compile(&duty.output(CompiledOutput::Loss).output(CompiledOutput::Efficiency)).unwrap();
         let mut work = compiled.workspace();
         let mut own = vec![0.0; terminals.len() + 2];
         for (point, c) in points.iter().zip(program.ask(&points)) {

@@ -5,7 +5,9 @@ pub mod draw;
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::{Model, Target};
-use willis::study::{Axis, Hold, PointAnswer, PointAnswers, Question, Trains, UncertaintyPlan, UncertaintyRequest};
+use willis::study::{
+    Axis, Hold, PointAnswer, PointAnswers, PointSetup, TrainCache, UncertaintyPlan, UncertaintyRequest,
+};
 use willis::work::{self, Effort, Serial, Work};
 
 use crate::kind::{Ask, Detail, FigureRequest, Kind, MEASURED, MOMENT};
@@ -36,7 +38,7 @@ fn in_steps(model: &Model, r: &FigureRequest, work: &dyn Work, detail: Detail) -
 fn effort(model: &Model, request: &FigureRequest) -> Effort {
     let samples = if request.samples == 0 { SAMPLES } else { request.samples };
     let steps = if request.over.is_empty() { STEPS } else { axes::points(&request.over, model) };
-    match Question::new(model, None, None, Hold::AsGiven) {
+    match PointSetup::new(model, None, None, Hold::AsGiven) {
         Ok(question) => question.effort(samples as u64, steps as u64),
         Err(_) => Effort::of_points(model.train(), 1),
     }
@@ -115,7 +117,7 @@ pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Re
 }
 
 /// Efficiency and loss of a sample at every value of the axis; NaN where there is no single answer.
-fn along(plan: &UncertaintyPlan<'_>, sample: usize, x: &Axis, trains: &mut Trains) -> Vec<[f64; 2]> {
+fn along(plan: &UncertaintyPlan<'_>, sample: usize, x: &Axis, trains: &mut TrainCache) -> Vec<[f64; 2]> {
     /// Values at which it is tried to compile: the first may lie on a border.
     const TRIES: usize = 3;
     if plan.question().model().train().is_physical() {

@@ -6,7 +6,7 @@ pub mod path;
 use serde::{Deserialize, Serialize};
 use willis::analysis::operate;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::operating_point::Regime;
+use willis::operating_point::LubricationRegime;
 use willis::train::{Operation, Train};
 use willis::unstable::{self, Along};
 
@@ -180,7 +180,7 @@ pub fn contact_path(train: &Train, operation: Option<&str>, mesh: Option<&str>) 
                     friction_law: train.laws().mesh_friction(true).meta().id.to_owned(),
                     local: meshes.iter().any(|m| m.1),
                     film_law: train.laws().film.meta().id.to_owned(),
-                    limits: Regime::LIMITS,
+                    limits: LubricationRegime::LIMITS,
                     meshes: meshes.into_iter().map(|m| m.0).collect(),
                     left_out,
                 });

@@ -82,7 +82,7 @@ pub use split::{MechanicalPoint, Split, SplitGear, SplitMode, SplitPoint, split}
 pub use stick::draw::{draw as draw_stick, in_columns as stick_panel};
 pub use stick::{
     GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickLayout, StickMember,
-    StickMesh, StickPiece, StickTerminal, Way, stick,
+    StickMesh, StickPiece, StickTerminal, TerminalDirection, stick,
 };
 pub use table::draw::draw as draw_table;
 pub use tikz::tikz;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::operating_point::LossKind;
-use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question, Sweep};
+use willis::study::{Axis, Hold, PointAnswer, PointSetup, PointVerdict, Sweep};
 use willis::work::Effort;
 
 use crate::kind::{Ask, FigureRequest, Kind};
@@ -124,7 +124,7 @@ pub fn loss_chart(
     over: &[String],
 ) -> Result<LossChart, Diagnostics> {
     let train = model.train();
-    let question = Question::new(model, operation, state, Hold::AsGiven)?;
+    let question = PointSetup::new(model, operation, state, Hold::AsGiven)?;
     if question.base().loads.is_empty() {
         let d = Diagnostic::new(Code::Unfit, "", "losses belong to a loaded operating point, and there is none");
         return Err(d.hint("add an [[operation]] with speeds and torques or powers").into());
@@ -205,7 +205,7 @@ pub fn loss_chart(
 }
 
 /// The value of the axis at the operating point itself, where that prescribes it.
-fn prescribed(question: &Question<'_>, x: &Axis) -> Option<f64> {
+fn prescribed(question: &PointSetup<'_>, x: &Axis) -> Option<f64> {
     let (who, what) = x.name.rsplit_once('.')?;
     let member = question.model().train().member(who)?;
     let speed = question.base().speeds.iter().find(|s| s.0 == member).filter(|_| what == "speed" && x.unit == "rpm")?;

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
-use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question};
+use willis::study::{Axis, Hold, PointAnswer, PointSetup, PointVerdict};
 use willis::train::{Load, MemberId, Operation, Train};
 use willis::unstable;
 use willis::work::{Cancelled, Effort, Serial, Work};
@@ -142,7 +142,9 @@ pub enum MapVerdict {
 /// There is a map where there is an operating point and quantities to vary.
 fn applies(model: &Model) -> bool {
     let first = model.train().states().first().filter(|_| model.train().operations().is_empty());
-    let Ok(question) = Question::new(model, None, first.map(|s| s.name.as_str()), Hold::AsGiven) else { return false };
+    let Ok(question) = PointSetup::new(model, None, first.map(|s| s.name.as_str()), Hold::AsGiven) else {
+        return false;
+    };
     axes::parse(&[axes::usual_speed(&question, 2), axes::usual_load(&question, 2)], model).is_ok()
 }
 
@@ -218,7 +220,7 @@ fn map_within(
     let train = model.train();
     // Without an operation that says so, a train with states is looked at in its first.
     let first = train.states().first().filter(|_| train.operations().is_empty()).map(|s| s.name.as_str());
-    let question = Question::new(model, operation, state.or(first), Hold::AsGiven)?;
+    let question = PointSetup::new(model, operation, state.or(first), Hold::AsGiven)?;
     let open = state.is_none() && operation.is_none() && over.is_empty();
     if open
         && train.states().len() > 1
@@ -461,7 +463,7 @@ impl EfficiencyMap {
 }
 
 /// Where the operations of the file lie that prescribe both quantities.
-fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
+fn marks(question: &PointSetup<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
     let train = question.model().train();
     let mut all = vec![];
     let base = question.base();
@@ -507,7 +509,11 @@ fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
 }
 
 /// Over speed and torque of the output, at every point the best state.
-fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Result<Option<EfficiencyMap>, Diagnostics> {
+fn best_state(
+    question: &PointSetup<'_>,
+    work: &dyn Work,
+    detail: Detail,
+) -> Result<Option<EfficiencyMap>, Diagnostics> {
     let model = question.model();
     let train = model.train();
     let (Some(input), Some(output)) = (train.input(), train.output()) else { return Ok(None) };

@@ -8,7 +8,7 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::kinematics::Configuration;
 use willis::model::Model;
-use willis::study::{Axis, Hold, Question, Sweep};
+use willis::study::{Axis, Hold, PointSetup, Sweep};
 use willis::train::{Load, MemberId, Operation, Train};
 use willis::work::Effort;
 
@@ -149,7 +149,7 @@ pub fn split(model: &Model, r: &FigureRequest) -> Result<Split, Diagnostics> {
         let hint = "describe the second path as a [[variator]]: two members and an efficiency, or machines on a bus";
         return Err(refuse("no power split: the train has no variator", hint));
     }
-    let base = Question::new(model, r.operation.as_deref(), r.state.as_deref(), Hold::AsGiven)?.base().clone();
+    let base = PointSetup::new(model, r.operation.as_deref(), r.state.as_deref(), Hold::AsGiven)?.base().clone();
     if base.loads.is_empty() || base.speeds.is_empty() {
         let hint = "add an [[operation]] with the speed and the torque or power of the input";
         return Err(refuse("no power split: there is no operating point to start from", hint));
@@ -179,7 +179,7 @@ pub fn split(model: &Model, r: &FigureRequest) -> Result<Split, Diagnostics> {
     let [x] = <[Axis; 1]>::try_from(axes::parse(&[over], model)?).expect("one is parsed");
     let mut modes = Vec::new();
     for (state, mechanical) in free.into_iter().zip(mechanical) {
-        let question = Question::new(model, r.operation.as_deref(), state.as_deref(), Hold::AsGiven)?;
+        let question = PointSetup::new(model, r.operation.as_deref(), state.as_deref(), Hold::AsGiven)?;
         let sweep = Sweep::new(question, vec![x.clone()], &[])?;
         let mut trains = Default::default();
         let one = |k: u64| match sweep.ask(k, &mut trains) {
@@ -289,7 +289,7 @@ fn point(train: &Train, operation: &Operation) -> SplitPoint {
 /// A state in which the gears fix the ratio, at the speed of the input.
 fn gear(model: &Model, r: &FigureRequest, state: &str) -> Option<SplitGear> {
     let train = model.train();
-    let question = Question::new(model, r.operation.as_deref(), Some(state), Hold::AsGiven).ok()?;
+    let question = PointSetup::new(model, r.operation.as_deref(), Some(state), Hold::AsGiven).ok()?;
     let mut operation = question.base().clone();
     let [input, output] = ends(train, &Some(state.to_owned()))?;
     operation.speeds.retain(|(m, _)| *m == input);

@@ -233,10 +233,11 @@ pub struct StickGround {
 
 /// Direction of power at a terminal, driving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+// The schema keeps the name that is published.
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Way"))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
-pub enum Way {
+pub enum TerminalDirection {
     /// Power enters.
     In,
     /// Power leaves.
@@ -255,7 +256,7 @@ pub struct StickTerminal {
     /// At the left border; else the right one.
     pub left: bool,
     /// The direction of power, where the state or the train says it.
-    pub way: Option<Way>,
+    pub way: Option<TerminalDirection>,
     /// An external torque may act here; else the line only names a member that has no gear.
     pub open: bool,
 }

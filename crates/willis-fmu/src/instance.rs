@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use willis::diagnostic::Diagnostics;
-use willis::dynamics::{Input, Outcome, Output, Simulation};
+use willis::dynamics::{InputHandle, Outcome, OutputHandle, Simulation};
 use willis::model::Model;
 
 use crate::layout::{Interface, Kind, Layout, Role, TOLERANCE, Value, Variable, options, verdict, written};
@@ -101,8 +101,8 @@ pub(crate) struct Instance {
     /// Time of the host less that of the scenario, s.
     pub offset: f64,
     pub run: Option<Simulation>,
-    handles: Vec<Input>,
-    outputs: Vec<Output>,
+    handles: Vec<InputHandle>,
+    outputs: Vec<OutputHandle>,
     losses: Vec<f64>,
     losses_at: Option<f64>,
     /// What is to be told, by category.
@@ -292,9 +292,10 @@ impl Instance {
             ));
         }
         self.handles = run.inputs().iter().map(|i| i.input).collect();
-        let outputs: Result<Vec<Output>, Diagnostics> = self.layout.columns.iter().map(|c| run.output(c)).collect();
+        let outputs: Result<Vec<OutputHandle>, Diagnostics> =
+            self.layout.columns.iter().map(|c| run.output(c)).collect();
         self.outputs = outputs.map_err(wrong)?;
-        let given: Vec<(Input, f64)> =
+        let given: Vec<(InputHandle, f64)> =
             self.handles.iter().zip(&self.inputs).filter_map(|(h, given)| Some((*h, given.value?))).collect();
         let mut run = run.again_with(&given).map_err(wrong)?;
         self.inputs.iter_mut().for_each(|given| given.pending = false);
@@ -538,7 +539,7 @@ impl Instance {
             return Err(error(format!("a step from {time} s is asked for, and the run stands at {now} s")));
         }
         let until = time + length - offset;
-        let moving: Vec<(Input, f64)> = (self.handles.iter().zip(&self.inputs))
+        let moving: Vec<(InputHandle, f64)> = (self.handles.iter().zip(&self.inputs))
             .filter_map(|(h, given)| Some((*h, given.value.filter(|_| given.pending)?)))
             .collect();
         let run = self.ready()?;

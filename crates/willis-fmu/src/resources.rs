@@ -22,7 +22,7 @@ const MOST: u64 = 256 << 20;
 /// The index of the folder.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Index {
+pub(crate) struct ResourceIndex {
     /// `willis-fmu-2`
     pub format: String,
     pub scenario: String,
@@ -41,7 +41,7 @@ pub(crate) struct Index {
 /// The only format there is.
 pub(crate) const FORMAT: &str = "willis-fmu-2";
 
-impl Index {
+impl ResourceIndex {
     pub fn interface(&self) -> Interface {
         match (self.co_simulation, self.model_exchange) {
             (true, true) => Interface::Both,
@@ -53,7 +53,7 @@ impl Index {
 
 /// All files of the folder.
 pub(crate) struct Resources {
-    pub index: Index,
+    pub index: ResourceIndex,
     /// Names and texts; the index is not among them.
     pub files: Vec<(String, String)>,
 }
@@ -68,7 +68,7 @@ impl Resources {
             tables.insert(name.to_owned(), file.clone());
             files.push((file, text.to_owned()));
         }
-        let mut index = Index {
+        let mut index = ResourceIndex {
             format: FORMAT.to_owned(),
             scenario: scenario.to_owned(),
             co_simulation: interface.steps(),
@@ -97,7 +97,7 @@ impl Resources {
             fs::read_to_string(&path).map_err(told)
         };
         let text = file(INDEX)?;
-        let index: Index = serde_json::from_str(&text)
+        let index: ResourceIndex = serde_json::from_str(&text)
             .map_err(|e| format!("{}: {e}; export the unit anew", folder.join(INDEX).display()))?;
         if index.format != FORMAT {
             return Err(format!(
@@ -140,8 +140,8 @@ impl Resources {
 }
 
 /// Of what is in the folder.
-fn token(index: &Index, files: &[(String, String)]) -> String {
-    let bare = Index { token: String::new(), ..index.clone() };
+fn token(index: &ResourceIndex, files: &[(String, String)]) -> String {
+    let bare = ResourceIndex { token: String::new(), ..index.clone() };
     let mut hash = Sha256::new();
     hash.update(serde_json::to_vec(&bare).expect("plain data"));
     for (name, text) in files {

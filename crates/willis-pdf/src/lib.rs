@@ -15,7 +15,7 @@ use crate::contract::Contract;
 pub use crate::measure::Measured;
 
 use crate::document::{Block, Document, Plate};
-use crate::paper::{Extent, MM, Place};
+use crate::paper::{FigureSize, MM, Place};
 use crate::pictures::Picture;
 use crate::world::{Desk, Template};
 
@@ -155,7 +155,7 @@ fn alone(plate: &Plate) -> Result<Value, String> {
     const PIXEL: f64 = 0.75;
     let picture = Picture::of(&plate.svg).map_err(|e| format!("the figure is no SVG: {e}"))?;
     let paper = plate.width_mm.filter(|w| w.is_finite() && *w > 0.0).map(|w| w * MM);
-    let Extent { size, .. } = picture.extent;
+    let FigureSize { size, .. } = picture.extent;
     let least = picture.extent.least();
     let natural = PIXEL.max(least);
     // On paper that is too narrow the page grows, and text keeps its size.

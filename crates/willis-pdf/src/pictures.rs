@@ -2,12 +2,12 @@
 
 use roxmltree::Node;
 
-use crate::paper::Extent;
+use crate::paper::FigureSize;
 
 /// A figure before it is set.
 pub struct Picture {
     /// Its size, and that of its smallest text.
-    pub extent: Extent,
+    pub extent: FigureSize,
     /// What it shows, in its own words.
     pub alternative: String,
 }
@@ -24,7 +24,7 @@ impl Picture {
         let size = ["width", "height"].map(|name| number(name).filter(|x| x.is_finite() && *x > 0.0));
         let [Some(width), Some(height)] = size else { return Err("it has no width and height".to_owned()) };
         let sizes = xml.descendants().filter(|n| n.is_text() && within_text(*n)).filter_map(font_size);
-        let extent = Extent { size: [width, height], smallest: sizes.reduce(f64::min) };
+        let extent = FigureSize { size: [width, height], smallest: sizes.reduce(f64::min) };
         let says = |name: &str| root.children().find(|n| n.tag_name().name() == name).and_then(|n| n.text());
         let words: Vec<&str> = ["title", "desc"].into_iter().filter_map(says).map(str::trim).collect();
         Ok(Self { extent, alternative: words.join(". ") })
@@ -56,7 +56,7 @@ mod tests {
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="90" height="60"><title>A</title><desc>B</desc>{texts}</svg>"#
         );
         let picture = Picture::of(&svg).expect("a figure");
-        assert_eq!(picture.extent, Extent { size: [90.0, 60.0], smallest: Some(9.0) });
+        assert_eq!(picture.extent, FigureSize { size: [90.0, 60.0], smallest: Some(9.0) });
         assert_eq!(picture.alternative, "A. B");
         assert!(Picture::of("<svg/>").is_err() && Picture::of("<svg").is_err());
     }

@@ -11,7 +11,7 @@ use std::ptr::{null, null_mut};
 use pyo3::prelude::*;
 use pyo3::types::PyCapsule;
 
-use crate::table::{Cells, Column, Table};
+use crate::table::{CellValues, Column, Table};
 
 const NULLABLE: i64 = 2;
 
@@ -171,38 +171,38 @@ unsafe extern "C" fn release_array(this: *mut Array) {
 
 fn schema_of(column: &Column) -> Schema {
     let format = match column.cells {
-        Cells::Numbers(_) => "g",
-        Cells::Integers(_) => "l",
+        CellValues::Numbers(_) => "g",
+        CellValues::Integers(_) => "l",
         // Offsets of 64 bits: no table is too long.
-        Cells::Texts(_) => "U",
-        Cells::Flags(_) => "b",
+        CellValues::Texts(_) => "U",
+        CellValues::Flags(_) => "b",
     };
     schema(format, &column.name, &column.unit, vec![])
 }
 
-fn array_of(cells: &Cells, rows: usize) -> Array {
+fn array_of(cells: &CellValues, rows: usize) -> Array {
     fn valid<T>(all: &[Option<T>]) -> (usize, Option<Vec<u64>>) {
         let nulls = all.iter().filter(|x| x.is_none()).count();
         (nulls, (nulls > 0).then(|| bits(all.iter().map(Option::is_some))))
     }
     match cells {
-        Cells::Numbers(all) => {
+        CellValues::Numbers(all) => {
             let nulls = all.iter().filter(|x| x.is_nan()).count();
             let valid = (nulls > 0).then(|| bits(all.iter().map(|x| !x.is_nan())));
             let values = all.iter().map(|x| x.to_bits()).collect();
             array(rows, nulls, vec![valid, Some(values)], vec![])
         }
-        Cells::Integers(all) => {
+        CellValues::Integers(all) => {
             let (nulls, valid) = valid(all);
             let values = all.iter().map(|x| x.unwrap_or(0) as u64).collect();
             array(rows, nulls, vec![valid, Some(values)], vec![])
         }
-        Cells::Flags(all) => {
+        CellValues::Flags(all) => {
             let (nulls, valid) = valid(all);
             let values = bits(all.iter().map(|x| x.unwrap_or(false)));
             array(rows, nulls, vec![valid, Some(values)], vec![])
         }
-        Cells::Texts(all) => {
+        CellValues::Texts(all) => {
             let (nulls, valid) = valid(all);
             let (mut offsets, mut bytes) = (vec![0u64], vec![]);
             for text in all {

@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use willis::compiled::{self, CompiledTrain, Output, Points, PowerLoss, ShaftDrag};
+use willis::compiled::{self, BatchInputs, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
 use willis::train::Train;
 
 use crate::refused::wrong;
@@ -11,7 +11,7 @@ use crate::refused::wrong;
 /// What is prescribed at every point, and what is wanted, as the package says it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub struct Duty {
+pub struct CompileArguments {
     state: Option<String>,
     fixed: Vec<String>,
     speeds: Vec<String>,
@@ -36,9 +36,11 @@ pub struct Compiled {
 const BLOCK: usize = 1 << 15;
 
 impl Compiled {
-    pub fn new(py: Python<'_>, train: &Train, duty: Duty) -> PyResult<Self> {
-        let mut own =
-            compiled::Duty::new(duty.speeds.iter().map(String::as_str), duty.torques.iter().map(String::as_str));
+    pub fn new(py: Python<'_>, train: &Train, duty: CompileArguments) -> PyResult<Self> {
+        let mut own = compiled::CompileRequest::new(
+            duty.speeds.iter().map(String::as_str),
+            duty.torques.iter().map(String::as_str),
+        );
         if let Some(state) = &duty.state {
             own = own.state(state);
         }
@@ -54,14 +56,16 @@ impl Compiled {
         }
         for (kind, name) in duty.outputs {
             own = own.output(match kind.as_str() {
-                "speed" => Output::Speed(name),
+                "speed" => CompiledOutput::Speed(name),
                 // What is no mesh and no shift element is refused as a member.
-                "torque" if train.member(&name).is_some() => Output::Torque(name),
-                "torque" if train.mesh(&name).is_some() => Output::MeshTorque(name),
-                "torque" if train.shift_elements().iter().any(|e| e.name == name) => Output::ShiftElementTorque(name),
-                "torque" => Output::Torque(name),
-                "loss" => Output::Loss,
-                _ => Output::Efficiency,
+                "torque" if train.member(&name).is_some() => CompiledOutput::Torque(name),
+                "torque" if train.mesh(&name).is_some() => CompiledOutput::MeshTorque(name),
+                "torque" if train.shift_elements().iter().any(|e| e.name == name) => {
+                    CompiledOutput::ShiftElementTorque(name)
+                }
+                "torque" => CompiledOutput::Torque(name),
+                "loss" => CompiledOutput::Loss,
+                _ => CompiledOutput::Efficiency,
             });
         }
         let (speeds, torques) = (duty.speeds.len(), duty.torques.len());
@@ -149,7 +153,7 @@ impl Compiled {
                 let own = block(&slices, &constant, at, len);
                 let (speeds, torques) = own.split_at(self.speeds);
                 part.resize(sums.len(), 0.0);
-                odd += self.train.sum_batch(&Points { speeds, torques }, &mut room, &mut part);
+                odd += self.train.sum_batch(&BatchInputs { speeds, torques }, &mut room, &mut part);
                 sums.iter_mut().zip(&part).for_each(|(s, p)| *s += p);
                 at += len;
             }
@@ -201,7 +205,7 @@ impl Compiled {
             }
             let inputs = block(slices, constant, at, len);
             let (speeds, torques) = inputs.split_at(self.speeds);
-            odd += self.train.evaluate_batch(&Points { speeds, torques }, &mut room, &mut own);
+            odd += self.train.evaluate_batch(&BatchInputs { speeds, torques }, &mut room, &mut own);
             at += len;
         }
     }

@@ -12,7 +12,7 @@ use crate::arrow;
 
 /// Cells of a column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Cells {
+pub enum CellValues {
     /// Real numbers; NaN where there is none. In JSON it is null.
     Numbers(#[serde(with = "numbers")] Vec<f64>),
     Integers(Vec<Option<i64>>),
@@ -39,7 +39,7 @@ pub struct Column {
     pub name: String,
     /// Empty where there is none.
     pub unit: String,
-    pub cells: Cells,
+    pub cells: CellValues,
 }
 
 /// A table, by columns.
@@ -59,10 +59,10 @@ impl Table {
             .into_iter()
             .map(|c| {
                 let cells = match c.kind {
-                    Kind::Text => Cells::Texts(Vec::with_capacity(rows)),
-                    Kind::Number => Cells::Numbers(Vec::with_capacity(rows)),
-                    Kind::Integer => Cells::Integers(Vec::with_capacity(rows)),
-                    Kind::Flag => Cells::Flags(Vec::with_capacity(rows)),
+                    Kind::Text => CellValues::Texts(Vec::with_capacity(rows)),
+                    Kind::Number => CellValues::Numbers(Vec::with_capacity(rows)),
+                    Kind::Integer => CellValues::Integers(Vec::with_capacity(rows)),
+                    Kind::Flag => CellValues::Flags(Vec::with_capacity(rows)),
                 };
                 Column { name: c.name, unit: c.unit, cells }
             })
@@ -80,7 +80,7 @@ impl Table {
     }
 }
 
-impl Cells {
+impl CellValues {
     fn push(&mut self, cell: Cell) {
         match (self, cell) {
             (Self::Numbers(all), Cell::Number(x)) => all.push(x),
@@ -121,13 +121,13 @@ impl Table {
     fn column_of<'py>(this: Bound<'py, Self>, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let table = this.get();
         Ok(match &table.column(name)?.cells {
-            Cells::Numbers(all) => numbers_of(all, this.clone().into_any()).into_any(),
-            Cells::Integers(all) if all.iter().all(Option::is_some) => {
+            CellValues::Numbers(all) => numbers_of(all, this.clone().into_any()).into_any(),
+            CellValues::Integers(all) if all.iter().all(Option::is_some) => {
                 PyArray1::from_iter(py, all.iter().flatten().copied()).into_any()
             }
-            Cells::Integers(all) => all.clone().into_pyobject(py)?.into_any(),
-            Cells::Texts(all) => all.clone().into_pyobject(py)?.into_any(),
-            Cells::Flags(all) => all.clone().into_pyobject(py)?.into_any(),
+            CellValues::Integers(all) => all.clone().into_pyobject(py)?.into_any(),
+            CellValues::Texts(all) => all.clone().into_pyobject(py)?.into_any(),
+            CellValues::Flags(all) => all.clone().into_pyobject(py)?.into_any(),
         })
     }
 

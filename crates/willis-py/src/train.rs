@@ -10,7 +10,7 @@ use willis::model::Model;
 use willis::train::Train as Checked;
 use willis_ask::{Attachment, Given, Refusal, quoted};
 
-use crate::compiled::{Compiled, Duty};
+use crate::compiled::{CompileArguments, Compiled};
 use crate::refused::{refused, wrong};
 
 /// A train under its name.
@@ -176,7 +176,7 @@ impl Train {
         self.changed(py, model, "law", &laws)
     }
 
-    fn compile(&self, py: Python<'_>, duty: Duty) -> PyResult<Compiled> {
+    fn compile(&self, py: Python<'_>, duty: CompileArguments) -> PyResult<Compiled> {
         Compiled::new(py, self.train(), duty)
     }
 }

@@ -11,7 +11,7 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
+use willis::compiled::{BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
 use willis::train::{SetSpec, Train};
 
 fn points(default: usize) -> usize {
@@ -51,14 +51,14 @@ fn sum(x: &[f64]) -> f64 {
     if x.len() <= 128 { x.iter().sum() } else { sum(&x[..x.len() / 2]) + sum(&x[x.len() / 2..]) }
 }
 
-fn power_split(outputs: &[Output]) -> CompiledTrain {
+fn power_split(outputs: &[CompiledOutput]) -> CompiledTrain {
     let train = Train::builder("power split")
         .members(["sun", "ring", "carrier"])
         .terminals(["sun", "ring", "carrier"])
         .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier").basic_efficiency(0.97515))
         .build()
         .unwrap();
-    let mut duty = Duty::new(["sun", "carrier"], ["sun"]);
+    let mut duty = CompileRequest::new(["sun", "carrier"], ["sun"]);
     for (m, coulomb, viscous) in [("sun", 0.4, 1e-3), ("ring", 0.8, 2e-3), ("carrier", 0.6, 1.5e-3)] {
         duty = duty.drag(m, ShaftDrag { coulomb, viscous });
     }
@@ -78,15 +78,15 @@ fn map(c: &mut Criterion) {
         ts[i] = random.next() * 400.0 - 200.0;
     }
     let (speeds, torques): ([&[f64]; 2], [&[f64]; 1]) = ([&ws, &wc], [&ts]);
-    let input = Points { speeds: &speeds, torques: &torques };
+    let input = BatchInputs { speeds: &speeds, torques: &torques };
     let mut group = c.benchmark_group("map");
     group.throughput(Throughput::Elements(n as u64)).sample_size(10);
 
     let all = power_split(&[
-        Output::Torque("ring".into()),
-        Output::Torque("carrier".into()),
-        Output::Loss,
-        Output::Efficiency,
+        CompiledOutput::Torque("ring".into()),
+        CompiledOutput::Torque("carrier".into()),
+        CompiledOutput::Loss,
+        CompiledOutput::Efficiency,
     ]);
     let mut work = all.workspace();
     let mut out = vec![vec![0.5; n]; 4];
@@ -95,7 +95,7 @@ fn map(c: &mut Criterion) {
     let names = ["torque_ring", "torque_carrier", "loss", "efficiency"];
     record("map-all", &names.iter().zip(&out).map(|(k, o)| (*k, sum(o))).collect::<Vec<_>>(), n);
 
-    let efficiency = power_split(&[Output::Efficiency]);
+    let efficiency = power_split(&[CompiledOutput::Efficiency]);
     let mut work = efficiency.workspace();
     let [e, ..] = &mut out[..] else { unreachable!() };
     group.bench_function("map-efficiency", |b| {
@@ -124,22 +124,22 @@ fn automatic(c: &mut Criterion) {
         t[i] = -100.0 + random.next() * 450.0;
     }
     let (speeds, torques): ([&[f64]; 1], [&[f64]; 1]) = ([&w], [&t]);
-    let input = Points { speeds: &speeds, torques: &torques };
+    let input = BatchInputs { speeds: &speeds, torques: &torques };
     let train = eight_speed();
     let mut group = c.benchmark_group("automatic");
     group.sample_size(20);
     for (gear, elements) in [("1", "ABC"), ("3", "BCE"), ("5", "BCD")] {
-        let mut duty = Duty::new(["input"], ["input"]).state(gear);
+        let mut duty = CompileRequest::new(["input"], ["input"]).state(gear);
         for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
             duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
         }
         for s in 1..=4 {
-            duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+            duty = duty.output(CompiledOutput::MeshTorque(format!("P{s}.sun-planet")));
         }
         for e in elements.chars() {
-            duty = duty.output(Output::ShiftElementTorque(e.to_string()));
+            duty = duty.output(CompiledOutput::ShiftElementTorque(e.to_string()));
         }
-        let duty = duty.output(Output::Torque("output".into()));
+        let duty = duty.output(CompiledOutput::Torque("output".into()));
         let law = PowerLoss { coefficient: 0.02, exponent: 0.2, torque: 1.0, speed: 1.0, ..PowerLoss::default() };
         let by_load = (1..=4).fold(duty.clone(), |d, s| d.mesh_loss(&format!("P{s}"), law));
         for (duty, name) in [(duty, "automatic"), (by_load, "automatic-load")] {
@@ -202,7 +202,7 @@ fn cold(c: &mut Criterion) {
             }
         });
     });
-    let duty = Duty::new(["input"], ["input"]).state("5").output(Output::Efficiency);
+    let duty = CompileRequest::new(["input"], ["input"]).state("5").output(CompiledOutput::Efficiency);
     let train = eight_speed();
     group.bench_function("eight-speed-compile-one-gear", |b| b.iter(|| train.compile(black_box(&duty)).unwrap()));
     group.finish();

@@ -11,10 +11,11 @@ use std::path::Path;
 use std::process::Command;
 
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
+use willis::compiled::{BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
 use willis::dynamics::{Batch, FixedStep, Options, Simulation, simulate};
 use willis::model::Model;
-use willis::study::{Axis, Hold, Question, Sweep};
+use willis::regimes::{RegimeSelection, regimes};
+use willis::study::{Axis, Hold, PointSetup, Sweep};
 use willis::train::{SetSpec, Train};
 
 /// More than this above the recorded count fails.
@@ -36,6 +37,18 @@ const TASKS: &[Task] = &[
     ("eight-speed-text-to-answer", 1, cold),
     ("physical-stage-sweep", SIDE * SIDE, physical_stage),
     ("physical-eight-speed-sweep", SIDE * SIDE, physical_eight_speed),
+    ("chain-analyze-1", 1, |n| chain_analyzed(1, n)),
+    ("chain-analyze-4", 1, |n| chain_analyzed(4, n)),
+    ("chain-analyze-16", 1, |n| chain_analyzed(16, n)),
+    ("chain-analyze-64", 1, |n| chain_analyzed(64, n)),
+    ("chain-regimes-1", 1, |n| chain_regimes(1, n)),
+    ("chain-regimes-4", 1, |n| chain_regimes(4, n)),
+    ("chain-regimes-16", 1, |n| chain_regimes(16, n)),
+    ("chain-regimes-64", 1, |n| chain_regimes(64, n)),
+    ("chain-simulate-1", 1, |n| chain_moved(1, n)),
+    ("chain-simulate-4", 1, |n| chain_moved(4, n)),
+    ("chain-simulate-16", 1, |n| chain_moved(16, n)),
+    ("chain-simulate-64", 1, |n| chain_moved(64, n)),
     ("set-fixed-step", 20_000, |n| steps(&trains::set(), "pulses", 20_000, false, n)),
     ("set-fixed-step-audited", 20_000, |n| steps(&trains::set(), "pulses", 20_000, true, n)),
     ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, false, n)),
@@ -69,7 +82,7 @@ fn inputs(ranges: [(f64, f64); 3]) -> [Vec<f64>; 3] {
     ranges.map(|(low, high)| (0..POINTS).map(|_| low + (high - low) * next()).collect())
 }
 
-fn power_split(outputs: &[Output]) -> CompiledTrain {
+fn power_split(outputs: &[CompiledOutput]) -> CompiledTrain {
     let train = Train::builder("power split")
         .members(["sun", "ring", "carrier"])
         .terminals(["sun", "ring", "carrier"])
@@ -77,8 +90,9 @@ fn power_split(outputs: &[Output]) -> CompiledTrain {
         .build()
         .unwrap();
     let drag = ShaftDrag { coulomb: 0.5, viscous: 1e-3 };
-    let duty = Duty::new(["sun", "carrier"], ["sun"]).drag("sun", drag).drag("ring", drag).drag("carrier", drag);
-    train.compile(&outputs.iter().cloned().fold(duty, Duty::output)).unwrap()
+    let duty =
+        CompileRequest::new(["sun", "carrier"], ["sun"]).drag("sun", drag).drag("ring", drag).drag("carrier", drag);
+    train.compile(&outputs.iter().cloned().fold(duty, CompileRequest::output)).unwrap()
 }
 
 fn run(compiled: &CompiledTrain, speeds: &[&[f64]], torque: &[f64], times: usize) {
@@ -86,30 +100,36 @@ fn run(compiled: &CompiledTrain, speeds: &[&[f64]], torque: &[f64], times: usize
     let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
     let mut work = compiled.workspace();
     for _ in 0..times {
-        compiled.evaluate_batch(&Points { speeds, torques: &[torque] }, &mut work, black_box(&mut slices));
+        compiled.evaluate_batch(&BatchInputs { speeds, torques: &[torque] }, &mut work, black_box(&mut slices));
     }
 }
 
 fn map_all(n: usize) {
     let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
-    let outputs = [Output::Torque("ring".into()), Output::Torque("carrier".into()), Output::Loss, Output::Efficiency];
+    let outputs = [
+        CompiledOutput::Torque("ring".into()),
+        CompiledOutput::Torque("carrier".into()),
+        CompiledOutput::Loss,
+        CompiledOutput::Efficiency,
+    ];
     run(&power_split(&outputs), &[&w0, &w1], &t, n);
 }
 
 fn map_efficiency(n: usize) {
     let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
-    run(&power_split(&[Output::Efficiency]), &[&w0, &w1], &t, n);
+    run(&power_split(&[CompiledOutput::Efficiency]), &[&w0, &w1], &t, n);
 }
 
 fn eight_speed(gear: &str, by_load: bool) -> CompiledTrain {
     let train = Train::from_toml(include_str!("../../../examples/zf-8hp70.toml")).unwrap();
-    let mut duty = Duty::new(["input"], ["input"]).state(gear).output(Output::Torque("output".into()));
+    let mut duty =
+        CompileRequest::new(["input"], ["input"]).state(gear).output(CompiledOutput::Torque("output".into()));
     for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
         duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
     }
     let law = PowerLoss { coefficient: 0.02, exponent: 0.2, torque: 1.0, speed: 1.0, ..PowerLoss::default() };
     for s in 1..=4 {
-        duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+        duty = duty.output(CompiledOutput::MeshTorque(format!("P{s}.sun-planet")));
         if by_load {
             duty = duty.mesh_loss(&format!("P{s}"), law);
         }
@@ -145,7 +165,7 @@ fn cold(n: usize) {
 fn physical(text: &str, over: [&str; 2], state: Option<&str>, n: usize) {
     let model = Model::from_toml(text).unwrap();
     for _ in 0..n {
-        let question = Question::new(&model, None, state, Hold::AsGiven).unwrap();
+        let question = PointSetup::new(&model, None, state, Hold::AsGiven).unwrap();
         let axes = over.map(|axis| Axis::parse(axis, &model).unwrap()).to_vec();
         let sweep = Sweep::new(question, axes, &[]).unwrap();
         black_box(sweep.rows(0, sweep.len(), &mut Default::default()));
@@ -153,18 +173,34 @@ fn physical(text: &str, over: [&str; 2], state: Option<&str>, n: usize) {
 }
 
 fn physical_stage(n: usize) {
-    let text = include_str!("../../../examples/fva-planetary-stage.toml");
-    physical(text, ["sun.speed=100..3000 rpm:32", "sun.torque=50..1600 N m:32"], None, n);
+    physical(trains::STAGE, ["sun.speed=100..3000 rpm:32", "sun.torque=50..1600 N m:32"], None, n);
 }
 
 /// An automatic with a drag on each shaft.
 fn physical_eight_speed(n: usize) {
-    let mut text = include_str!("../../../examples/zf-8hp70.toml").to_owned();
-    for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
-        let values = "coulomb = \"0.2 N m\"\nviscous = \"1e-3 N m s/rad\"";
-        text += &format!("\n[[drag]]\nname = \"drag of {m}\"\nmembers = [\"{m}\"]\n{values}\n");
-    }
+    let text = trains::automatic_with_drags();
     physical(&text, ["input.speed=1000..5000 rpm:32", "input.torque=50..700 N m:32"], Some("3"), n);
+}
+
+/// Sets in series, from text to every answer of `analyze`.
+fn chain_analyzed(sets: usize, n: usize) {
+    let text = trains::chain(sets);
+    for _ in 0..n {
+        black_box(analyze(&Train::from_toml(black_box(&text)).unwrap(), &Selection::default()).unwrap());
+    }
+}
+
+/// The regimes of sets in series, with their formulas.
+fn chain_regimes(sets: usize, n: usize) {
+    let train = Train::from_toml(&trains::chain(sets)).unwrap();
+    for _ in 0..n {
+        black_box(regimes(black_box(&train), &RegimeSelection::default()).unwrap());
+    }
+}
+
+/// A second of sets in series, preparation included.
+fn chain_moved(sets: usize, n: usize) {
+    adaptive(&Train::from_toml(&trains::chain(sets)).unwrap(), "run up", n);
 }
 
 /// Whole runs in steps of 1 ms, modes known; with the energies counted or without.

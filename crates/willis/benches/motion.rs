@@ -203,6 +203,9 @@ fn longest(_: &mut Criterion) {
         ("median_ns", ns(median(&known))),
         ("first_ns", ns(worst(&first))),
         ("timer_ns", 1e9 * timer),
+        ("seconds", worst(&known) - timer),
+        // The least of twenty runs, step by step.
+        ("spread", 0.0),
     ];
     record("automatic-longest-step", 16_000.0, &sums);
     println!("automatic-longest-step: {sums:.0?}");

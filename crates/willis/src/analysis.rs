@@ -41,7 +41,7 @@ pub use variators::{MachineReport, VariatorReport};
 pub use crate::power_flow::{BeyondLimit, LimitedQuantity};
 pub use why::{TorqueRange, Why};
 
-pub use crate::named::Named;
+pub use crate::named::NameMap;
 pub use in_force::frozen;
 pub(crate) use in_force::in_force;
 pub(crate) use operation::Point;
@@ -449,14 +449,14 @@ pub struct SolutionReport {
     /// Input less output less losses, W.
     pub power_residual_w: f64,
     /// Every member but the frame.
-    pub members: Named<MemberReport>,
+    pub members: NameMap<MemberReport>,
     /// Every mesh.
-    pub meshes: Named<MeshReport>,
+    pub meshes: NameMap<MeshReport>,
     /// Every engaged shift element.
-    pub shift_elements: Named<ShiftElementReport>,
+    pub shift_elements: NameMap<ShiftElementReport>,
     /// Every variator.
-    #[serde(default, skip_serializing_if = "Named::is_empty")]
-    pub variators: Named<VariatorReport>,
+    #[serde(default, skip_serializing_if = "NameMap::is_empty")]
+    pub variators: NameMap<VariatorReport>,
     /// Limits of variators that are exceeded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub beyond_limits: Vec<BeyondLimit>,
@@ -466,14 +466,14 @@ pub struct SolutionReport {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<LossSource>,
     /// Tooth contacts of the meshes whose teeth are given.
-    #[serde(default, skip_serializing_if = "Named::is_empty")]
-    pub contacts: Named<ContactReport>,
+    #[serde(default, skip_serializing_if = "NameMap::is_empty")]
+    pub contacts: NameMap<ContactReport>,
     /// Rolling bearings.
-    #[serde(default, skip_serializing_if = "Named::is_empty")]
-    pub bearings: Named<BearingReport>,
+    #[serde(default, skip_serializing_if = "NameMap::is_empty")]
+    pub bearings: NameMap<BearingReport>,
     /// Loads of the shafts that rest on these bearings.
-    #[serde(default, skip_serializing_if = "Named::is_empty")]
-    pub shaft_loads: Named<ShaftLoad>,
+    #[serde(default, skip_serializing_if = "NameMap::is_empty")]
+    pub shaft_loads: NameMap<ShaftLoad>,
     /// Numbers that cannot be right, or for which something is missing.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub doubts: Vec<Doubt>,
@@ -559,7 +559,7 @@ pub struct OperationReport {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_deviation: Option<SpeedDeviation>,
     /// Speeds, also when the torques have no answer; rad/s.
-    pub speeds_rad_s: Named<Option<f64>>,
+    pub speeds_rad_s: NameMap<Option<f64>>,
     /// Temperatures and heat, where the train says what carries heat away.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub heat: Option<Box<HeatReport>>,
@@ -602,7 +602,7 @@ impl OperationReport {
     }
 
     /// An operating point before anything but its speeds is known.
-    fn new(train: &Train, operation: &Operation, freedoms: usize, speeds: Named<Option<f64>>) -> Self {
+    fn new(train: &Train, operation: &Operation, freedoms: usize, speeds: NameMap<Option<f64>>) -> Self {
         Self {
             name: operation.name.clone(),
             state: operation.state.map(|k| train.states[k].name.clone()),
@@ -641,7 +641,7 @@ pub struct Analysis {
     /// Degrees of freedom as drawn, no shift element engaged.
     pub degrees_of_freedom: usize,
     /// The shift table, or one row `as drawn`.
-    pub ratios: Named<StateReport>,
+    pub ratios: NameMap<StateReport>,
     /// The operating points.
     pub operations: Vec<OperationReport>,
     /// What stands in for data that were not given, and what the model leaves out.
@@ -790,7 +790,7 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
     let mut errors = Diagnostics::default();
     let mut diagnostics: Diagnostics = Diagnostics::default();
     diagnostics.extend(train.warnings.iter().cloned());
-    let mut ratios = Named::default();
+    let mut ratios = NameMap::default();
     if train.states.is_empty()
         && let Some(row) = table::row(train, None, &[], AS_DRAWN, &mut diagnostics)
     {

@@ -1,7 +1,7 @@
 //! A train compiled for many operating points: no allocation per point and, with constant
 //! efficiencies, no elimination.
 //!
-//! For a fixed choice of what is prescribed (a [`Duty`]) every torque is linear in the prescribed
+//! For a fixed choice of what is prescribed (a [`CompileRequest`]) every torque is linear in the prescribed
 //! torques, the prescribed speeds and the signs of the shaft speeds (Coulomb drag), once it is known
 //! which end of each element drives. So the sign patterns are factorised once, at compile time,
 //! and a point costs a small matrix-vector product and a check that the pattern fits. Batches are
@@ -14,7 +14,7 @@
 //!
 //! # Losses that depend on load and speed
 //!
-//! [`Duty::mesh_loss`] gives a mesh or a set a loss that is a power law of its own torque and speed.
+//! [`CompileRequest::mesh_loss`] gives a mesh or a set a loss that is a power law of its own torque and speed.
 //! Torques are then no longer linear, and each point is solved by Newton's method: torques balance to
 //! round-off, and the losses in them agree with their laws to 1e-10 of all mesh losses.
 //!
@@ -45,7 +45,7 @@ use parts::{Law, MOST_FEATURES, MOST_LINEAR, MOST_MOVING};
 use single::Single;
 
 pub use batch::Workspace;
-pub use duty::{Duty, Output, PointVerdict, Points, PowerLoss, ShaftDrag};
+pub use duty::{BatchInputs, CompileRequest, CompiledOutput, PointVerdict, PowerLoss, ShaftDrag};
 pub use grid::{GridInputs, OutputSummary, PointValue};
 pub use tables::{TableElement, TableMesh, TableOutput, Tables};
 
@@ -76,7 +76,7 @@ enum Column {
 }
 
 impl Train {
-    /// Compiles the train for a duty.
+    /// Compiles the train for what is prescribed and wanted.
     ///
     /// # Errors
     /// Names that do not exist, speeds that do not determine the motion or contradict each other,
@@ -85,7 +85,7 @@ impl Train {
     ///
     /// # Example
     /// ```
-    /// use willis::compiled::{Duty, Output};
+    /// use willis::compiled::{CompileRequest, CompiledOutput};
     /// use willis::train::{SetSpec, Train};
     ///
     /// let train = Train::builder("power split")
@@ -93,10 +93,10 @@ impl Train {
     ///     .terminals(["sun", "ring", "carrier"])
     ///     .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier").mesh_efficiency(0.99))
     ///     .build()?;
-    /// let duty = Duty::new(["sun", "carrier"], ["sun"])
-    ///     .output(Output::Torque("ring".into()))
-    ///     .output(Output::Efficiency);
-    /// let compiled = train.compile(&duty)?;
+    /// let request = CompileRequest::new(["sun", "carrier"], ["sun"])
+    ///     .output(CompiledOutput::Torque("ring".into()))
+    ///     .output(CompiledOutput::Efficiency);
+    /// let compiled = train.compile(&request)?;
     /// let mut work = compiled.workspace();
     /// let mut out = [0.0; 2];
     /// compiled.evaluate(&[300.0, 100.0], &[10.0], &mut work, &mut out);
@@ -104,7 +104,7 @@ impl Train {
     /// assert!((out[0] - 7.0 / 3.0 * 0.9801 * 10.0).abs() < 1e-12);
     /// # Ok::<(), willis::diagnostic::Diagnostics>(())
     /// ```
-    pub fn compile(&self, duty: &Duty) -> Result<CompiledTrain, Diagnostics> {
+    pub fn compile(&self, duty: &CompileRequest) -> Result<CompiledTrain, Diagnostics> {
         Compiler::new(self, duty)?.compile()
     }
 }
@@ -119,7 +119,7 @@ struct Compiler<'t> {
     between: Vec<[MemberId; 2]>,
     /// By element.
     laws: Vec<Option<Law>>,
-    outputs: Vec<Output>,
+    outputs: Vec<CompiledOutput>,
 }
 
 fn fail(code: Code, message: String, hint: &str) -> Diagnostics {
@@ -129,7 +129,7 @@ fn fail(code: Code, message: String, hint: &str) -> Diagnostics {
 }
 
 impl<'t> Compiler<'t> {
-    fn new(train: &'t Train, duty: &Duty) -> Result<Self, Diagnostics> {
+    fn new(train: &'t Train, duty: &CompileRequest) -> Result<Self, Diagnostics> {
         let mut wrong = Diagnostics::default();
         let mut find = |names: &[String]| -> Vec<MemberId> {
             let mut ids = Vec::new();
@@ -279,7 +279,7 @@ impl<'t> Compiler<'t> {
             use crate::statics::Unsolvable::*;
             match why {
                 MissingLoads(n) => {
-                    fail(Code::MissingTorque, format!("{n} more torques are needed"), "list them in the duty")
+                    fail(Code::MissingTorque, format!("{n} more torques are needed"), "list them in the request")
                 }
                 TooManyLoads(n) => fail(
                     Code::TooManyTorques,
@@ -462,7 +462,7 @@ impl<'t> Compiler<'t> {
         all
     }
 
-    /// The fused kernel for one set with two freedoms, if this duty is of that kind.
+    /// The fused kernel for one set with two freedoms, if this request is of that kind.
     fn single(
         &self,
         general: &General,
@@ -499,7 +499,7 @@ impl<'t> Compiler<'t> {
 
     fn column(
         &self,
-        output: &Output,
+        output: &CompiledOutput,
         linear: &mut Vec<Linear>,
         speed_rows: &mut Vec<Vec<f64>>,
         speed_row: &dyn Fn(MemberId) -> Option<Vec<f64>>,
@@ -516,7 +516,7 @@ impl<'t> Compiler<'t> {
             Column::Linear(at)
         };
         Ok(match output {
-            Output::Speed(name) => {
+            CompiledOutput::Speed(name) => {
                 let m = train.member(name).ok_or_else(|| unknown("member", name))?;
                 let row = speed_row(m).ok_or_else(|| {
                     fail(
@@ -528,14 +528,14 @@ impl<'t> Compiler<'t> {
                 speed_rows.push(row);
                 Column::Speed(speed_rows.len() - 1)
             }
-            Output::Torque(name) => {
+            CompiledOutput::Torque(name) => {
                 let m = train.member(name).ok_or_else(|| unknown("terminal", name))?;
                 match self.torques.iter().position(|t| *t == m) {
                     Some(i) => Column::Input(i),
                     None => add(Linear::Torque(m)),
                 }
             }
-            Output::MeshTorque(name) => {
+            CompiledOutput::MeshTorque(name) => {
                 let mesh = train.mesh(name).ok_or_else(|| unknown("mesh", name))?;
                 let first = self.c.elements.iter().position(|e| e.links[0].mesh == mesh && e.links[0].along);
                 match first {
@@ -549,7 +549,7 @@ impl<'t> Compiler<'t> {
                     }
                 }
             }
-            Output::ShiftElementTorque(name) => {
+            CompiledOutput::ShiftElementTorque(name) => {
                 let e = train.shift_elements.iter().position(|e| e.name == *name);
                 let e = ShiftElementId(e.ok_or_else(|| unknown("shift element", name))?);
                 if !self.c.engaged.contains(&e) {
@@ -557,8 +557,8 @@ impl<'t> Compiler<'t> {
                 }
                 add(Linear::Tie(e))
             }
-            Output::Loss => Column::Loss,
-            Output::Efficiency => Column::Efficiency,
+            CompiledOutput::Loss => Column::Loss,
+            CompiledOutput::Efficiency => Column::Efficiency,
         })
     }
 
@@ -625,7 +625,7 @@ impl CompiledTrain {
     /// Evaluates one point. Nothing is allocated.
     ///
     /// # Panics
-    /// If the slices are not as long as the duty has speeds, torques and outputs.
+    /// If the slices are not as long as the request has speeds, torques and outputs.
     pub fn evaluate(&self, speeds: &[f64], torques: &[f64], work: &mut Workspace, out: &mut [f64]) -> PointVerdict {
         assert_eq!((speeds.len(), torques.len(), out.len()), (self.speeds, self.torques, self.outputs.len()));
         let mut linear = [0.0; MOST_LINEAR];

@@ -50,7 +50,7 @@ mod window;
 
 pub use batch::Batch;
 pub use fixed::FixedStep;
-pub use handles::{Input, InputInfo, InputKind, InputRefused, Output};
+pub use handles::{InputHandle, InputInfo, InputKind, InputRefused, OutputHandle};
 pub use modes::{Mode, ModesReport, Part, PlanetMode, RigidMode, modes};
 pub use report::{
     Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind,

@@ -5,6 +5,7 @@
 //! with ratio 10000/9999 is a real thing), so they are computed here. A [`Rational`] is a pair of
 //! `i128` until it no longer fits, then a big integer; no operation can overflow or round.
 
+pub(crate) mod blocks;
 mod polyhedron;
 pub mod residue;
 
@@ -529,38 +530,50 @@ pub(crate) fn solve(matrix: &Matrix, right: &[Rational]) -> Option<Vec<Rational>
     (reduce(&mut rows, n).len() == n).then(|| rows.into_iter().map(|mut r| r.pop().unwrap()).collect())
 }
 
-/// Whether a square matrix has an inverse.
+/// Rank of a matrix.
 ///
-/// Most have: elimination modulo a prime shows it, for what is not zero modulo a prime is not zero. Only what is zero there
-/// is looked at exactly.
-pub(crate) fn is_regular(matrix: &Matrix) -> bool {
-    is_regular_modulo(matrix) || !determinant(matrix).is_zero()
+/// Independent rows are the rule: elimination modulo a prime shows it, for what is not zero modulo a prime is not zero. Only
+/// what seems dependent there is looked at exactly.
+pub(crate) fn rank(mut matrix: Matrix, columns: usize) -> usize {
+    match rank_modulo(&matrix, columns) == Some(matrix.len()) {
+        true => matrix.len(),
+        false => reduce(&mut matrix, columns).len(),
+    }
 }
 
-/// Whether the determinant is known not to be a multiple of a large prime.
-fn is_regular_modulo(matrix: &Matrix) -> bool {
+/// Whether a square matrix has an inverse; see [`rank`].
+pub(crate) fn is_regular(matrix: &Matrix) -> bool {
     let n = matrix.len();
-    let Some(mut m) =
-        matrix.iter().map(|row| row.iter().map(Rational::modulo).collect()).collect::<Option<Vec<Vec<u64>>>>()
-    else {
-        return false;
-    };
-    for c in 0..n {
-        let Some(p) = (c..n).find(|&r| m[r][c] != 0) else { return false };
-        m.swap(p, c);
-        let (done, rest) = m.split_at_mut(c + 1);
-        let pivot = &done[c];
+    rank_modulo(matrix, n) == Some(n) || !determinant(matrix).is_zero()
+}
+
+/// The rank modulo a large prime, of which a denominator may be a multiple: then there is none.
+fn rank_modulo(matrix: &Matrix, columns: usize) -> Option<usize> {
+    let mut m = Vec::with_capacity(matrix.len() * columns);
+    for row in matrix {
+        for x in &row[..columns] {
+            m.push(x.modulo()?);
+        }
+    }
+    let mut rows: Vec<&mut [u64]> = m.chunks_mut(columns.max(1)).collect();
+    let mut rank = 0;
+    for c in 0..columns {
+        let Some(p) = (rank..rows.len()).find(|&r| rows[r][c] != 0) else { continue };
+        rows.swap(p, rank);
+        let (done, rest) = rows.split_at_mut(rank + 1);
+        let pivot = &done[rank];
         let inverse = residue::inverse(pivot[c]);
         for row in rest.iter_mut().filter(|row| row[c] != 0) {
             let factor = times(row[c], inverse);
-            for k in c..n {
+            for k in c..columns {
                 if pivot[k] != 0 {
                     row[k] = residue::minus(row[k], times(factor, pivot[k]));
                 }
             }
         }
+        rank += 1;
     }
-    true
+    Some(rank)
 }
 
 /// Determinant of a square matrix.

@@ -20,7 +20,7 @@ mod stiffness;
 
 pub use fault::{Fault, Quantity, Remark};
 pub use involute::{inverse_involute, involute};
-pub use planetary::{Chain, conjugate_shifts, least_mesh_angle, neighbour_clearance};
+pub use planetary::{SimpleSetGeometry, conjugate_shifts, least_mesh_angle, neighbour_clearance};
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -25,7 +25,7 @@ pub mod transient;
 
 pub use balance::{Balance, Bounds, Certificate, Equilibrium, HeatVerdict, Limits, Method, Sample, balance};
 pub use network::{Linearised, Unsolved};
-pub use transient::{Duty, Row, Run, Segment, duty, time_constants, warm_up};
+pub use transient::{PeriodicDuty, Row, Run, Segment, duty, time_constants, warm_up};
 
 /// What makes heat, as a function of the oil temperature.
 pub trait Source {

@@ -177,9 +177,10 @@ pub struct Station {
 
 /// A way from an input to an output.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+// The schema keeps the name that is published.
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Path"))]
 #[non_exhaustive]
-pub struct Path {
+pub struct PowerPath {
     /// Part of the input power that takes it.
     pub share_of_input: f64,
     /// Product of the efficiencies along it.
@@ -220,7 +221,7 @@ pub struct Hypergraph {
     /// Power that runs in circles, largest first.
     pub loops: Vec<Loop>,
     /// Ways from inputs to outputs, those that deliver most first, at most [`MOST_PATHS`].
-    pub paths: Vec<Path>,
+    pub paths: Vec<PowerPath>,
     /// How many there are.
     pub path_count: u64,
     /// Part of the input power that takes any of them; the rest is lost on its way where nothing is passed on.
@@ -1053,7 +1054,7 @@ impl Ways {
     }
 
     /// The paths that deliver most, their number, and the share of all.
-    fn list(&self, nodes: &[Node], input: f64) -> (Vec<Path>, u64, f64) {
+    fn list(&self, nodes: &[Node], input: f64) -> (Vec<PowerPath>, u64, f64) {
         let n = nodes.len();
         let is = |k: usize, kind: NodeKind| nodes[k].kind == kind;
         // From each node on: the best way to an output, and the number of ways.
@@ -1099,7 +1100,7 @@ impl Ways {
                         _ => self.efficiency(k),
                     },
                 };
-                paths.push(Path {
+                paths.push(PowerPath {
                     share_of_input: p.share,
                     efficiency: p.efficiency,
                     delivered_w: p.share * p.efficiency * input,

@@ -122,6 +122,26 @@ pub struct Transfer {
     pub conflicts: Vec<Vec<Rational>>,
 }
 
+impl Transfer {
+    /// Ratio of the only prescribed speed to that of a member.
+    pub(crate) fn ratio(&self, output: MemberId) -> Ratio {
+        if !self.conflicts.is_empty() {
+            return Ratio::InputLocked;
+        }
+        match &self.speeds[output.0] {
+            None => Ratio::Undetermined,
+            Some(w) if w[0].is_zero() => Ratio::OutputAtRest,
+            Some(w) => Ratio::Exact(w[0].recip()),
+        }
+    }
+
+    /// The same train with another speed prescribed, the ratio of the two being this: they settle the same speeds.
+    pub(crate) fn seen_from_other(&self, ratio: &Rational) -> Self {
+        let seen = |w: &Vec<Rational>| w.iter().map(|x| x * ratio).collect();
+        Self { speeds: self.speeds.iter().map(|s| s.as_ref().map(seen)).collect(), conflicts: vec![] }
+    }
+}
+
 /// The ratio between two members.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -225,8 +245,7 @@ impl<'t> Configuration<'t> {
             efficiencies,
             rank: 0,
         };
-        let mut rows = c.rows(0);
-        c.rank = exact::reduce(&mut rows, nodes).len();
+        c.rank = exact::rank(c.rows(0), nodes);
         c
     }
 
@@ -283,8 +302,7 @@ impl<'t> Configuration<'t> {
             });
         }
         rigid.into_iter().for_each(|[a, b]| c.elements.push(Element::rigid(a, b)));
-        let mut rows = c.rows(0);
-        c.rank = exact::reduce(&mut rows, c.nodes).len();
+        c.rank = exact::rank(c.rows(0), c.nodes);
         c
     }
 
@@ -517,15 +535,7 @@ impl<'t> Configuration<'t> {
 
     /// Ratio `ω_input/ω_output` with nothing else prescribed.
     pub fn ratio(&self, input: MemberId, output: MemberId) -> Ratio {
-        let transfer = self.transfer(&[input]);
-        if !transfer.conflicts.is_empty() {
-            return Ratio::InputLocked;
-        }
-        match &transfer.speeds[output.0] {
-            None => Ratio::Undetermined,
-            Some(w) if w[0].is_zero() => Ratio::OutputAtRest,
-            Some(w) => Ratio::Exact(w[0].recip()),
-        }
+        self.transfer(&[input]).ratio(output)
     }
 
     /// Exact speeds for prescribed ones. What contradicts the gears by less than [`Train::SAME_SPEED`], or within the

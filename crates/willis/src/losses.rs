@@ -14,7 +14,7 @@ use crate::diagnostic::{Code, Diagnostic};
 /// What every law says about itself. The list of laws, the documentation, the range warnings and
 /// the choice by name read this and nothing else.
 #[derive(Debug)]
-pub struct Meta<S: 'static> {
+pub struct LawInfo<S: 'static> {
     /// Name in files and on the command line, `schlenk`.
     pub id: &'static str,
     /// Whose it is, as readers say it: `Schlenk`, `Dowson–Higginson`; empty where it goes by what it does.
@@ -28,14 +28,18 @@ pub struct Meta<S: 'static> {
     /// What a caller must know to use it rightly.
     pub tags: &'static [Tag],
     /// Where the source claims validity.
-    pub valid: &'static [Range<S>],
+    pub valid: &'static [ValidityRange<S>],
 }
 
-impl<S> Meta<S> {
+impl<S> LawInfo<S> {
     /// Quantities of a state that lie outside the range of the source.
-    pub fn outside(&self, state: &S) -> Vec<Outside> {
-        let of =
-            |r: &Range<S>| Outside { symbol: r.symbol, unit: r.unit, value: (r.get)(state), range: (r.min, r.max) };
+    pub fn outside(&self, state: &S) -> Vec<OutsideValidity> {
+        let of = |r: &ValidityRange<S>| OutsideValidity {
+            symbol: r.symbol,
+            unit: r.unit,
+            value: (r.get)(state),
+            range: (r.min, r.max),
+        };
         self.valid.iter().map(of).filter(|o| !(o.range.0..=o.range.1).contains(&o.value)).collect()
     }
 }
@@ -84,7 +88,7 @@ pub enum Trust {
 
 /// One bound quantity of a validity range, SI.
 #[derive(Debug)]
-pub struct Range<S: 'static> {
+pub struct ValidityRange<S: 'static> {
     /// Symbol, as in the law's table of symbols.
     pub symbol: &'static str,
     /// Its SI unit.
@@ -99,7 +103,7 @@ pub struct Range<S: 'static> {
 
 /// A quantity that lies outside the range of a law.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Outside {
+pub struct OutsideValidity {
     /// Its symbol.
     pub symbol: &'static str,
     /// Its SI unit.
@@ -112,7 +116,7 @@ pub struct Outside {
 
 /// A law as lists show it.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct LawSummary {
     /// Name of the family, `mesh_friction`.
     pub family: &'static str,
     /// What the family gives: symbol and SI unit.
@@ -147,11 +151,11 @@ macro_rules! family {
         /// A law of this family.
         pub trait Law {
             /// Its description.
-            const META: crate::losses::Meta<$state<f64>>;
+            const META: crate::losses::LawInfo<$state<f64>>;
             #[doc = concat!("`", $symbol, "`, ", $unit)]
             fn eval<D: crate::Real>(&self, state: &$state<D>) -> D;
             /// Quantities that lie outside the range of the source.
-            fn outside(&self, state: &$state<f64>) -> Vec<crate::losses::Outside> {
+            fn outside(&self, state: &$state<f64>) -> Vec<crate::losses::OutsideValidity> {
                 Self::META.outside(state)
             }
         }
@@ -180,7 +184,7 @@ macro_rules! family {
                 match self { $(Self::$law(law) => law.eval(state)),+ }
             }
             /// Its description.
-            pub fn meta(&self) -> &'static crate::losses::Meta<$state<f64>> {
+            pub fn meta(&self) -> &'static crate::losses::LawInfo<$state<f64>> {
                 match self { $(Self::$law(_) => const { &<$law as Law>::META }),+ }
             }
             /// The law of that name, with its default coefficients.
@@ -188,14 +192,14 @@ macro_rules! family {
                 Self::ALL.iter().copied().find(|l| l.meta().id == id)
             }
             /// Quantities that lie outside the range of the source.
-            pub fn outside(&self, state: &$state<f64>) -> Vec<crate::losses::Outside> {
+            pub fn outside(&self, state: &$state<f64>) -> Vec<crate::losses::OutsideValidity> {
                 self.meta().outside(state)
             }
             /// Every law as lists show it.
-            pub fn entries() -> Vec<crate::losses::Entry> {
+            pub fn entries() -> Vec<crate::losses::LawSummary> {
                 Self::ALL.iter().enumerate().map(|(k, l)| {
                     let m = l.meta();
-                    crate::losses::Entry {
+                    crate::losses::LawSummary {
                         family: Self::FAMILY, gives: Self::GIVES, id: m.id, by: m.by, title: m.title, source: m.source,
                         trust: m.trust, tags: m.tags, default: k == 0,
                         valid: m.valid.iter().map(|r| (r.symbol, r.unit, r.min, r.max)).collect(),
@@ -250,7 +254,7 @@ macro_rules! laws {
         pub const FAMILIES: &[&str] = &["mesh_friction", "rolling", $(stringify!($name)),+];
 
         /// All laws of all families, in that order.
-        pub fn entries() -> Vec<Entry> {
+        pub fn entries() -> Vec<LawSummary> {
             let mut all = mesh_friction::MeshFriction::entries();
             all.extend(rolling::Rolling::entries());
             $(all.extend(<$family>::entries());)+
@@ -276,7 +280,7 @@ macro_rules! laws {
                     d = d.hint(format!("{list}: {}", known.join(", ")));
                     Box::new(d)
                 };
-                let no_law = |family: &str, entries: Vec<Entry>| {
+                let no_law = |family: &str, entries: Vec<LawSummary>| {
                     let known = entries.iter().map(|e| e.id).collect();
                     let what = format!("the family `{family}` has no law `{}`", short(law));
                     unknown(known, what, law, "its laws are")

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{Document, Reading, Specification, Train};
 
-pub use target::{Target, Who};
+pub use target::{ShaftRef, Target};
 pub(crate) use target::{oil_temperature, quantity};
 
 /// A gear train as data, any quantity of which can be read and set anew.

@@ -37,8 +37,8 @@ use smallvec::SmallVec;
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Coupling, Motion};
-use crate::losses::{Outside, bearing::Turning, mesh_friction::MeshFriction, rolling::Rolling};
-use crate::named::Named;
+use crate::losses::{OutsideValidity, bearing::Turning, mesh_friction::MeshFriction, rolling::Rolling};
+use crate::named::NameMap;
 use crate::power_flow::{Drag, Flow, MeshFlow};
 use crate::real::{self, Real};
 use crate::train::{
@@ -47,7 +47,7 @@ use crate::train::{
 
 pub use bearing::BearingReport;
 pub(crate) use bearing::BearingState;
-pub use contact::{ContactReport, Regime};
+pub use contact::{ContactReport, LubricationRegime};
 pub use forces::ShaftLoad;
 pub(crate) use motion::{LEAST_SPEED, Place};
 pub(crate) use numbers::{DragNumbers, MountNumbers, Numbers, OilState, PumpNumbers, RotorNumbers, VariatorNumbers};
@@ -324,7 +324,7 @@ pub struct Extrapolation {
     /// Where it was used.
     pub at: String,
     /// The quantity.
-    pub outside: Outside,
+    pub outside: OutsideValidity,
 }
 
 /// Where a drag comes from.
@@ -964,15 +964,15 @@ impl Physics<'_> {
     }
 
     /// The bearings of a solved step for people.
-    pub fn bearing_reports(&self, strains: &Strains) -> Named<BearingReport> {
+    pub fn bearing_reports(&self, strains: &Strains) -> NameMap<BearingReport> {
         let own = |(k, state): (usize, &BearingState)| {
             (self.train.bearings[k].name.clone(), self.bearing_report(&self.train, k, state))
         };
-        Named(strains.bearings.iter().enumerate().map(own).collect())
+        NameMap(strains.bearings.iter().enumerate().map(own).collect())
     }
 
     /// The contact of each mesh with teeth, with its losses in this flow.
-    pub fn contacts(&self, step: &Step, flow: &Flow) -> Named<ContactReport> {
+    pub fn contacts(&self, step: &Step, flow: &Flow) -> NameMap<ContactReport> {
         let mut all = Vec::new();
         for (m, own) in flow.meshes.iter().zip(&step.meshes) {
             let mesh = &self.train.meshes[m.mesh.0];
@@ -992,7 +992,7 @@ impl Physics<'_> {
                 rolling.filter(|(s, _)| **s == Source::Rolling(m.mesh.0)).map(|(_, loss)| *loss).sum::<f64>() + 0.0;
             all.push((mesh.name.clone(), contact));
         }
-        Named(all)
+        NameMap(all)
     }
 
     /// The bearings of a solved step, with their losses, and the loads of the shafts on them.

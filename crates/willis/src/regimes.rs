@@ -34,10 +34,10 @@ use setup::{Linked, Setup};
 pub(crate) use atlas::arrow;
 pub use basis::{EfficiencyBasis, NoBasis};
 pub(crate) use cells::efficiency_at;
-pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
-pub use family::{Case, Family, FamilyRange, Group, Row, family};
+pub use closed::{Argument, ClosedFormula, Derivative, FormulaError, FormulaRequest, FormulaSheet, formulas};
+pub use family::{Family, FamilyCase, FamilyRange, Group, Row, family};
 pub use formula::{Efficiencies, Ratios, SymbolKind};
-pub use locate::{Edge, LocateRequest, Located, Location, Prescribes, Range, locate};
+pub use locate::{Edge, LocateRequest, Located, Location, PrescribedRange, Prescribes, locate};
 pub use report::{
     AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, LinkReport,
     Neighbour, PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, Regimes, RegionReport, SymbolReport,
@@ -77,7 +77,7 @@ pub struct RegimeSelection {
 /// ```
 pub fn regimes(train: &Train, selection: &RegimeSelection) -> Result<Regimes, Diagnostics> {
     let mut states = Vec::new();
-    for Choice { state, configuration, terminals, balance, basis } in selected(train, selection)? {
+    for SelectedConfiguration { state, configuration, terminals, balance, basis } in selected(train, selection)? {
         let own = atlas(state, configuration, &terminals, balance);
         states.push(Atlas { efficiency_basis: basis, ..own });
     }
@@ -89,7 +89,7 @@ pub fn regimes(train: &Train, selection: &RegimeSelection) -> Result<Regimes, Di
 }
 
 /// A configuration that a selection names, with its terminals.
-pub(crate) struct Choice<'t> {
+pub(crate) struct SelectedConfiguration<'t> {
     pub state: String,
     pub configuration: Configuration<'t>,
     pub terminals: Vec<MemberId>,
@@ -99,7 +99,10 @@ pub(crate) struct Choice<'t> {
 }
 
 /// The configurations that a selection names.
-pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Result<Vec<Choice<'t>>, Diagnostics> {
+pub(crate) fn selected<'t>(
+    train: &'t Train,
+    selection: &RegimeSelection,
+) -> Result<Vec<SelectedConfiguration<'t>>, Diagnostics> {
     selected_at(train, selection, &|_| None)
 }
 
@@ -108,7 +111,7 @@ fn selected_at<'t>(
     train: &'t Train,
     selection: &RegimeSelection,
     here: &dyn Fn(Option<usize>) -> Option<Operation>,
-) -> Result<Vec<Choice<'t>>, Diagnostics> {
+) -> Result<Vec<SelectedConfiguration<'t>>, Diagnostics> {
     let mut errors = Diagnostics::default();
     let mut members = |names: &[String]| {
         let mut all: Vec<MemberId> = Vec::new();
@@ -174,7 +177,7 @@ fn selected_at<'t>(
                 Some((efficiencies, basis)) => (configuration.with_efficiencies(efficiencies), Some(basis)),
                 None => (configuration, None),
             };
-            Choice { state, configuration, terminals: members, balance, basis }
+            SelectedConfiguration { state, configuration, terminals: members, balance, basis }
         })
         .collect())
 }
@@ -186,7 +189,9 @@ pub(crate) fn choice_of_two<'t>(
     selection: &RegimeSelection,
 ) -> Result<(Atlas, Setup<'t>), Result<Diagnostics, String>> {
     let mut reason = None;
-    for Choice { state, configuration, terminals, balance, basis } in selected(train, selection).map_err(Ok)? {
+    for SelectedConfiguration { state, configuration, terminals, balance, basis } in
+        selected(train, selection).map_err(Ok)?
+    {
         let label = state.clone();
         let own = atlas(state, configuration.clone(), &terminals, balance);
         let own = Atlas { efficiency_basis: basis, ..own };

@@ -19,7 +19,6 @@
 //! lie anywhere between, which is reported, not guessed. An element with zero force is idle: it
 //! has no driver and no loss (the one deterministic rule for idle meshes).
 
-mod blocks;
 mod enumeration;
 mod problem;
 
@@ -30,11 +29,10 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
+use crate::exact::blocks::{Block, blocks};
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
 use crate::train::MemberId;
-
-use blocks::{Block, blocks};
 
 pub(crate) use enumeration::Stretch;
 pub use problem::{Balanced, Equilibria, Problem, Unposed};

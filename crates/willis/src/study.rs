@@ -1,7 +1,7 @@
 //! Many operating points: maps, trends, what matters most, how sure it is, and files for other programs.
 //!
-//! A [`Model`](crate::model::Model) is a train whose quantities can be set anew; a [`Question`] says what is prescribed and what is
-//! held while quantities vary; an [`Axis`] is one quantity and its values. A [`Sweep`] puts them together: a grid of
+//! A [`Model`](crate::model::Model) is a train whose quantities can be set anew; a [`PointSetup`] says what is prescribed
+//! and what is held while quantities vary; an [`Axis`] is one quantity and its values. A [`Sweep`] puts them together: a grid of
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
 mod answer;
@@ -36,8 +36,8 @@ pub use compare::{
 };
 pub use compiled::{CompiledSweep, SweepWorkspace};
 pub use cycle::{
-    Cycle, CycleAnswer, CycleOil, CycleReport, CycleRequest, Energies, EnergyKind, PowerDirection, RepeatedMessage,
-    SourceEnergy, TerminalEnergy, VerdictTime, Worst, WorstRow, cycle,
+    Cycle, CycleAnswer, CycleOil, CycleReport, CycleRequest, Energies, EnergyKind, LossBySource, PowerDirection,
+    RepeatedMessage, TerminalEnergy, VerdictTime, Worst, WorstRow, cycle,
 };
 pub(crate) use design::quantile;
 pub use design::{Design, REPLICATES, SamplingError, SobolIndices, Statistics};
@@ -46,7 +46,7 @@ pub use heat::{
     DutyHeat, HeatRequest, HeatRow, HeatStudy, NoWarmUp, OperationHeat, RatingStatus, ThermalRating, WarmUp, heat,
 };
 pub use profile::{Basis, Profile, ProfileColumns, ProfileRow};
-pub use question::{Hold, Question, Trains};
+pub use question::{Hold, PointSetup, TrainCache};
 pub use sensitivity::{
     Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,
 };

@@ -1,70 +1,98 @@
-//! `cargo xtask bench`: the compiled train beside numpy and numba, and motion beside scipy, in one run, as ratios.
+//! `cargo xtask bench`: speed beside that of peers, in one run, in one table.
 //!
 //! A ratio is printed only between programs whose checksums agree; the smoothed friction of the scripts in scipy ends
-//! elsewhere, so that each side checks its own end.
+//! elsewhere, so that each side checks its own end. Where samples of a task lie far apart the machine was busy, and the
+//! row says so in the place of a verdict.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
 use serde_json::Value;
 
 use crate::context::Context;
 use crate::step::{Outcome, outcome};
 
-/// Task, peer, ratio asked for (`performance` goals of the project).
-const GOALS: &[(&str, &str, Option<f64>)] = &[
-    ("map-all", "numpy-whole-array", Some(10.0)),
-    ("map-all", "numpy-blocked", None),
-    ("map-all", "numba-fused", Some(0.9)),
-    ("map-efficiency", "numpy-whole-array", Some(40.0)),
-    ("map-efficiency", "numba-fused", None),
-    ("map-reduced", "numpy-whole-array", Some(40.0)),
-    ("map-reduced", "numba-fused", None),
-    ("automatic-gear-1", "numpy-batched-solve", Some(200.0)),
-    ("automatic-gear-1", "numpy-precomputed", Some(15.0)),
-    ("automatic-gear-1", "numpy-grouped", None),
-    ("automatic-gear-1", "numba-fused", None),
-    ("automatic-gear-3", "numpy-batched-solve", Some(200.0)),
-    ("automatic-gear-3", "numpy-precomputed", Some(15.0)),
-    ("automatic-gear-3", "numpy-grouped", None),
-    ("automatic-gear-3", "numba-fused", None),
-    ("automatic-gear-5", "numpy-batched-solve", Some(200.0)),
-    ("automatic-gear-5", "numpy-precomputed", Some(15.0)),
-    ("automatic-gear-5", "numpy-grouped", None),
-    ("automatic-gear-5", "numba-fused", None),
-    ("automatic-load-gear-1", "numpy-batched-solve", Some(30.0)),
-    ("automatic-load-gear-3", "numpy-batched-solve", Some(30.0)),
-    ("automatic-load-gear-5", "numpy-batched-solve", Some(30.0)),
+/// What is asked of a row.
+#[derive(Clone, Copy)]
+enum Goal {
+    /// So many times as fast as the peer.
+    Times(f64),
+    /// At least so many a second.
+    Least(f64),
+    /// At most so many seconds.
+    Most(f64),
+    /// Nothing; for comparison.
+    None,
+}
+use Goal::{Least, Most, Times};
+
+/// Task, peer (a program, or another task of ours), what is asked, and what the machine allows at most, in words.
+type Asked = (&'static str, &'static str, Goal, &'static str);
+
+/// Points, steps, or seconds of a scenario, in a second. Limits: the same arithmetic written in C for this case alone, or
+/// the bandwidth of the memory.
+const RATES: &[Asked] = &[
+    ("map-all", "numpy-whole-array", Times(10.0), "17: 56 bytes a point"),
+    ("map-all", "numpy-blocked", Goal::None, ""),
+    ("map-all", "numba-fused", Times(0.9), "1.1: 56 bytes a point"),
+    ("map-efficiency", "numpy-whole-array", Times(40.0), "97 in cache; 32 bytes a point"),
+    ("map-efficiency", "numba-fused", Goal::None, ""),
+    ("map-reduced", "numpy-whole-array", Times(40.0), "120 in cache; 24 bytes a point"),
+    ("map-reduced", "numba-fused", Times(1.0), "1.1: 24 bytes a point"),
+    ("automatic-gear-1", "numpy-batched-solve", Times(200.0), "1000"),
+    ("automatic-gear-1", "numpy-precomputed", Times(15.0), "80"),
+    ("automatic-gear-1", "numba-fused", Goal::None, ""),
+    ("automatic-gear-1", "", Least(500e6), "6.9e8"),
+    ("automatic-gear-3", "numpy-batched-solve", Times(200.0), "1000"),
+    ("automatic-gear-3", "numpy-precomputed", Times(15.0), "80"),
+    ("automatic-gear-3", "numba-fused", Goal::None, ""),
+    ("automatic-gear-3", "", Least(500e6), "6.9e8"),
+    ("automatic-gear-5", "numpy-batched-solve", Times(200.0), "1000"),
+    ("automatic-gear-5", "numpy-precomputed", Times(15.0), "80"),
+    ("automatic-gear-5", "numba-fused", Goal::None, ""),
+    ("automatic-gear-5", "", Least(500e6), "6.9e8"),
+    ("automatic-load-gear-1", "numpy-batched-solve", Times(30.0), "85"),
+    ("automatic-load-gear-3", "numpy-batched-solve", Times(30.0), "85"),
+    ("automatic-load-gear-5", "numpy-batched-solve", Times(30.0), "85"),
+    ("automatic-one-point", "", Goal::None, ""),
+    ("automatic-load-one-point", "", Goal::None, ""),
+    ("physical-stage", "", Least(1e5), ""),
+    ("physical-eight-speed", "", Least(5e4), ""),
+    ("set-adaptive", "scipy-lsoda", Times(30.0), "107"),
+    ("set-adaptive", "scipy-lsoda-numba", Goal::None, "75"),
+    ("set-adaptive-again", "", Least(5e4), "9.3e4"),
+    ("automatic-adaptive-again", "", Least(5e4), ""),
+    ("set-fixed-1e-3", "", Least(1.3e7), "2.6e7"),
+    ("set-fixed-1e-4", "", Least(1.3e7), "2.6e7"),
+    ("automatic-fixed-1e-3", "", Least(3e7), "3.5e7"),
+    ("automatic-fixed-1e-4", "", Least(3e7), "3.5e7"),
+    ("set-batch", "set-fixed-1e-3", Times(5.0), "13"),
+    ("automatic-batch", "automatic-fixed-1e-3", Goal::None, ""),
 ];
 
-/// Cold starts: criterion group and task, most seconds.
-const COLD: &[(&str, f64)] = &[
-    ("eight-speed-text-to-answer", 1e-3),
-    ("nine-automatics-two-loss-levels", 50e-3),
-    ("eight-speed-compile-one-gear", 1e-3),
+/// Seconds of one answer. `set-thousand` and `automatic-thousand`, which have no seconds, stand in [`BATCHES`].
+const ANSWERS: &[Asked] = &[
+    ("eight-speed-text-to-answer", "", Most(0.35e-3), ""),
+    ("nine-automatics-two-loss-levels", "", Most(50e-3), ""),
+    ("eight-speed-compile-one-gear", "", Most(1e-3), ""),
+    ("regimes-longest", "", Most(20e-3), ""),
+    ("stage-one-point", "", Goal::None, ""),
+    ("stage-sensitivity", "stage-one-point", Times(0.2), ""),
+    ("stage-uncertainty", "", Most(0.2), ""),
+    ("automatic-longest-step", "", Most(1e-6), "0.03e-6"),
+    // Sixteen times as many sets: sixteen times as long, were it linear.
+    ("chain-analyze-64", "chain-analyze-4", Goal::None, "1/16"),
+    ("chain-regimes-64", "chain-regimes-4", Goal::None, "1/16"),
+    ("chain-simulate-64", "chain-simulate-4", Goal::None, "1/16"),
 ];
 
-/// Motion beside a peer, or beside itself step by step: task, peer or task, ratio asked for.
-const MOTION_RATIOS: &[(&str, &str, Option<f64>)] = &[
-    ("set-adaptive", "scipy-lsoda", Some(30.0)),
-    ("set-adaptive", "scipy-lsoda-numba", None),
-    ("set-batch", "set-fixed-1e-3", Some(5.0)),
-    ("automatic-batch", "automatic-fixed-1e-3", None),
-];
+/// How many times as fast a thousand runs are side by side as one after the other.
+const BATCHES: &[(&str, f64)] = &[("set-thousand", 10.0), ("automatic-thousand", 8.0)];
 
-/// Seconds of a scenario, or steps of fixed length, in a second: task, fewest.
-const RATES: &[(&str, f64)] = &[
-    ("set-adaptive-again", 5e4),
-    ("automatic-adaptive-again", 5e4),
-    ("set-fixed-1e-3", 1.3e7),
-    ("set-fixed-1e-4", 1.3e7),
-    ("automatic-fixed-1e-3", 7e6),
-    ("automatic-fixed-1e-4", 7e6),
-];
-
-/// The longest step of the automatic, modes known, at most, ns.
-const LONGEST_STEP: f64 = 1000.0;
+/// Samples of a task that lie further apart than this share, the middle one beside the shortest, say nothing.
+const STEADY: f64 = 0.15;
 
 /// `cargo xtask bench`
 pub(crate) fn bench(context: &Context) -> Outcome {
@@ -93,29 +121,100 @@ pub(crate) fn bench_gate(context: &Context) -> Outcome {
     }
 }
 
+/// A measured value, and by how much the middle sample was worse than the best.
+#[derive(Clone, Copy)]
+struct Measured {
+    value: f64,
+    spread: f64,
+}
+
+/// The table, printed as it grows.
+#[derive(Default)]
+struct Table {
+    lines: Vec<String>,
+    missed: usize,
+    unsteady: usize,
+}
+
+impl Table {
+    fn head(&mut self) {
+        self.push(format!(
+            "{:34} {:22} {:>10} {:>10} {:>8} {:>9} {:>7}  {:8} {}",
+            "what", "peer", "peer's", "Willis", "ratio", "goal", "spread", "", "limit"
+        ));
+    }
+
+    fn push(&mut self, line: String) {
+        println!("{line}");
+        self.lines.push(line);
+    }
+
+    /// `rate`: more is better; else fewer seconds are. A goal in times is on the ratio.
+    fn row(
+        &mut self,
+        what: &str,
+        peer: &str,
+        theirs: Option<f64>,
+        ours: Measured,
+        rate: bool,
+        goal: Goal,
+        limit: &str,
+    ) {
+        let ratio = theirs.map(|theirs| if rate { ours.value / theirs } else { theirs / ours.value });
+        let (asked, reached) = match goal {
+            Times(x) => (format!("{x} x"), ratio.is_some_and(|r| r >= x)),
+            Least(x) => (format!("{x:.1e}"), ours.value >= x),
+            Most(x) => (format!("{x:.1e} s"), ours.value <= x),
+            Goal::None => (String::new(), true),
+        };
+        let verdict = match goal {
+            // A goal that was reached all the same was reached.
+            Goal::None => "",
+            _ if reached => "ok",
+            _ if ours.spread > STEADY => "busy",
+            _ => "MISS",
+        };
+        self.missed += usize::from(verdict == "MISS");
+        self.unsteady += usize::from(verdict == "busy");
+        let number = |x: f64| format!("{x:.3e}");
+        self.push(format!(
+            "{what:34} {peer:22} {:>10} {:>10} {:>8} {asked:>9} {:>6.0}%  {verdict:8} {limit}",
+            theirs.map_or(String::new(), number),
+            number(ours.value),
+            ratio.map_or(String::new(), |r| format!("{r:.3}")),
+            100.0 * ours.spread,
+        ));
+    }
+}
+
 /// Runs everything and prints the table. `Err` when a program failed or checksums differ.
 fn run(root: &Path) -> Result<(), String> {
+    let started = Instant::now();
     let folder = root.join("target/willis-bench");
     fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
     let checksums = folder.join("checksums.jsonl");
     let _ = fs::remove_file(&checksums);
-    let venv = folder.join("venv");
-    let python = venv.join("bin/python");
-    let requirements = root.join("benches/baselines/requirements.txt");
-    let installed = venv.join("requirements.txt");
-    let wanted = fs::read(&requirements).map_err(|e| e.to_string())?;
-    if fs::read(&installed).ok().as_ref() != Some(&wanted) {
-        command(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
-        command(Command::new(&python).args(["-m", "pip", "install", "--quiet", "-r"]).arg(&requirements))?;
-        fs::write(&installed, wanted).map_err(|e| e.to_string())?;
-    }
+    let python = python(root, &folder)?;
+    println!("building …");
+    let benches = ["--bench", "compiled", "--bench", "motion", "--bench", "answers"];
+    command(
+        Command::new("cargo").current_dir(root).args(["bench", "-p", "willis", "--no-run", "--quiet"]).args(benches),
+    )?;
+    let program = ["build", "--profile", "dist", "--quiet", "-p", "willis-cli"];
+    command(Command::new("cargo").current_dir(root).args(program))?;
     println!("Willis …");
-    let criterion = ["bench", "-p", "willis", "--bench", "compiled", "--bench", "motion", "--", "--noplot"];
-    let samples = root.join("target/criterion");
-    command(Command::new("cargo").current_dir(root).args(criterion).env("CRITERION_HOME", samples))?;
+    // Two seconds a task: the best of many short samples is what is kept.
+    let criterion = ["--", "--noplot", "--quiet", "--warm-up-time", "0.5", "--measurement-time", "2"];
+    let mut c = Command::new("cargo");
+    c.current_dir(root).args(["bench", "-p", "willis", "--quiet"]).args(benches).args(criterion);
+    command(c.env("CRITERION_HOME", root.join("target/criterion")).stdout(std::process::Stdio::null()))?;
     let mut peers = Vec::new();
-    let scripts: [(&str, &[&str]); 3] =
-        [("map.py", &["--points", "10000000"]), ("automatic.py", &["--points", "100000"]), ("motion.py", &[])];
+    let scripts: [(&str, &[&str]); 4] = [
+        ("map.py", &["--points", "10000000"]),
+        ("automatic.py", &["--points", "100000"]),
+        ("motion.py", &[]),
+        ("study.py", &[]),
+    ];
     for (script, arguments) in scripts {
         println!("{script} …");
         let mut c = Command::new(&python);
@@ -128,16 +227,126 @@ fn run(root: &Path) -> Result<(), String> {
         peers.extend(lines(&String::from_utf8_lossy(&out.stdout))?);
     }
     let own = lines(&fs::read_to_string(&checksums).map_err(|e| e.to_string())?)?;
+    let results = Results { root: root.to_owned(), own, peers };
 
-    println!("\n{:24} {:20} {:>12} {:>12} {:>8} {:>8}", "task", "peer", "peer Mpt/s", "Willis Mpt/s", "ratio", "goal");
+    let mut table = Table::default();
     let mut wrong = Vec::new();
-    for (task, peer, goal) in GOALS {
-        let find =
-            |all: &[Value], key: &str, name: &str| all.iter().find(|v| v["task"] == *task && v[key] == name).cloned();
-        let (Some(theirs), Some(ours)) = (find(&peers, "peer", peer), find(&own, "peer", "willis")) else {
-            wrong.push(format!("{task} {peer}: no result"));
-            continue;
+    println!();
+    table.head();
+    for &(task, peer, goal, limit) in RATES {
+        let theirs = results.theirs(task, peer, true, &mut wrong)?;
+        table.row(task, peer, theirs, results.rate(task)?, true, goal, limit);
+    }
+    for &(task, peer, goal, limit) in ANSWERS {
+        let theirs = results.theirs(task, peer, false, &mut wrong)?;
+        table.row(task, peer, theirs, results.seconds(task)?, false, goal, limit);
+    }
+    for &(task, goal) in BATCHES {
+        let ours = results.recorded(task, "ratio")?;
+        let one = Measured { value: ours.value, spread: ours.spread };
+        table.row(task, "one by one", Some(1.0), one, true, Times(goal), "");
+    }
+    commands(&results, &mut table, &mut wrong)?;
+    fs::write(folder.join("table.txt"), table.lines.join("\n") + "\n").map_err(|e| e.to_string())?;
+    println!(
+        "\n{} goals missed, {} rows unsteady; {:.0} s. Rates a second, answers in seconds; the table is in target/willis-bench",
+        table.missed,
+        table.unsteady,
+        started.elapsed().as_secs_f64()
+    );
+    if table.unsteady > 0 {
+        println!("samples of unsteady rows lie far apart: the machine was busy. Run it again when it is quiet.");
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
+}
+
+/// The interpreter of an environment with the peers.
+fn python(root: &Path, folder: &Path) -> Result<PathBuf, String> {
+    let venv = folder.join("venv");
+    let python = venv.join("bin/python");
+    let requirements = root.join("benches/baselines/requirements.txt");
+    let installed = venv.join("requirements.txt");
+    let wanted = fs::read(&requirements).map_err(|e| e.to_string())?;
+    if fs::read(&installed).ok().as_ref() != Some(&wanted) {
+        command(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
+        command(Command::new(&python).args(["-m", "pip", "install", "--quiet", "-r"]).arg(&requirements))?;
+        fs::write(&installed, wanted).map_err(|e| e.to_string())?;
+    }
+    Ok(python)
+}
+
+/// What the programs said.
+struct Results {
+    root: PathBuf,
+    own: Vec<Value>,
+    peers: Vec<Value>,
+}
+
+impl Results {
+    /// What a task of ours recorded beside its time.
+    fn ours(&self, task: &str) -> Result<&Value, String> {
+        self.own.iter().find(|v| v["task"] == task).ok_or_else(|| format!("{task}: no result"))
+    }
+
+    /// A task that measured itself.
+    fn recorded(&self, task: &str, key: &str) -> Result<Measured, String> {
+        let sums = &self.ours(task)?["checksum"];
+        let at = |key: &str| sums[key].as_f64().ok_or_else(|| format!("{task}: no `{key}`"));
+        Ok(Measured { value: at(key)?, spread: at("spread")? })
+    }
+
+    /// Points a second.
+    fn rate(&self, task: &str) -> Result<Measured, String> {
+        let points = match self.ours(task) {
+            Ok(own) => own["points"].as_f64().unwrap_or(f64::NAN),
+            // One point, or as many as criterion was told.
+            Err(_) => self.throughput(task).unwrap_or(1.0),
         };
+        let Measured { value, spread } = self.sampled(task)?;
+        Ok(Measured { value: points / value, spread })
+    }
+
+    /// Seconds of an answer.
+    fn seconds(&self, task: &str) -> Result<Measured, String> {
+        self.sampled(task).or_else(|_| self.recorded(task, "seconds"))
+    }
+
+    fn file(&self, task: &str, name: &str) -> Option<Value> {
+        ["map", "automatic", "cold", "motion", "answers"].iter().find_map(|group| {
+            let file = self.root.join(format!("target/criterion/{group}/{task}/new/{name}"));
+            serde_json::from_str(&fs::read_to_string(file).ok()?).ok()
+        })
+    }
+
+    /// How many points criterion was told that one call has.
+    fn throughput(&self, task: &str) -> Option<f64> {
+        self.file(task, "benchmark.json")?["throughput"]["Elements"].as_f64()
+    }
+
+    /// Seconds of the best of the samples of criterion, and how far the middle one lies above it.
+    fn sampled(&self, task: &str) -> Result<Measured, String> {
+        let v = self.file(task, "sample.json").ok_or_else(|| format!("{task}: criterion left no samples"))?;
+        let numbers =
+            |key: &str| -> Vec<f64> { v[key].as_array().into_iter().flatten().filter_map(Value::as_f64).collect() };
+        let mut each: Vec<f64> =
+            numbers("times").into_iter().zip(numbers("iters")).map(|(t, n)| t / n * 1e-9).collect();
+        each.sort_by(f64::total_cmp);
+        let (Some(least), Some(middle)) = (each.first(), each.get(each.len() / 2)) else {
+            return Err(format!("{task}: no samples"));
+        };
+        Ok(Measured { value: *least, spread: middle / least - 1.0 })
+    }
+
+    /// The rate or the seconds of a peer, whose checksums must be ours; of another task where no program has that name.
+    fn theirs(&self, task: &str, peer: &str, rate: bool, wrong: &mut Vec<String>) -> Result<Option<f64>, String> {
+        if peer.is_empty() {
+            return Ok(None);
+        }
+        let Some(theirs) = self.peers.iter().find(|v| v["task"] == task && v["peer"] == peer) else {
+            let other = if rate { self.rate(peer)? } else { self.seconds(peer)? };
+            return Ok(Some(other.value));
+        };
+        let ours = self.ours(task)?;
         let points = ours["points"].as_f64().unwrap_or(f64::NAN);
         for (key, mine) in ours["checksum"].as_object().into_iter().flatten() {
             let (mine, other) = (mine.as_f64().unwrap_or(f64::NAN), theirs["checksum"][key].as_f64());
@@ -147,92 +356,43 @@ fn run(root: &Path) -> Result<(), String> {
                 wrong.push(format!("{task} {peer}: {key} is {mine}, theirs {other:?}"));
             }
         }
-        let speed = points / best(root, task)?;
-        let peer_speed = theirs["points_per_s"].as_f64().unwrap_or(f64::NAN);
-        let ratio = speed / peer_speed;
-        let goal = verdict(ratio, *goal);
-        println!("{task:24} {peer:20} {:12.2} {:12.2} {ratio:8.2} {goal:>8}", peer_speed / 1e6, speed / 1e6);
+        Ok(theirs["points_per_s"].as_f64())
     }
-    for task in ["automatic-one-point", "automatic-load-one-point"] {
-        println!("{task:24} {:20} {:>12} {:12.2}", "", "", 1e-6 / best(root, task)?);
-    }
-    for (task, most) in COLD {
-        let seconds = best(root, task)?;
-        let verdict = if seconds <= *most { "ok" } else { "MISS" };
-        println!("{task:34} {:9.3} ms, at most {} ms: {verdict}", 1e3 * seconds, 1e3 * most);
-    }
-    motion(root, &own, &peers)?;
-    study(root, &python, &mut wrong)?;
-    if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
-/// Motion: seconds of the scenario, or steps, in a second.
-fn motion(root: &Path, own: &[Value], peers: &[Value]) -> Result<(), String> {
-    let ours = |task: &str| own.iter().find(|v| v["task"] == task).ok_or_else(|| format!("{task}: no result"));
-    let rate = |task: &str| Ok::<f64, String>(ours(task)?["points"].as_f64().unwrap_or(f64::NAN) / best(root, task)?);
-    println!("\n{:24} {:20} {:>12} {:>12} {:>8} {:>8}", "task", "peer", "peer 1/s", "Willis 1/s", "ratio", "goal");
-    for (task, peer, goal) in MOTION_RATIOS {
-        let theirs = match peers.iter().find(|v| v["task"] == *task && v["peer"] == *peer) {
-            Some(v) => v["points_per_s"].as_f64().unwrap_or(f64::NAN),
-            None => rate(peer)?,
-        };
-        let speed = rate(task)?;
-        let (ratio, goal) = (speed / theirs, verdict(speed / theirs, *goal));
-        println!("{task:24} {peer:20} {theirs:12.3e} {speed:12.3e} {ratio:8.2} {goal:>8}");
-    }
-    for (task, fewest) in RATES {
-        let speed = rate(task)?;
-        println!("{task:24} {:20} {:>12} {speed:12.3e} {:>8} {:>8}", "", "", "", verdict(speed, Some(*fewest)));
-    }
-    let ns =
-        |key: &str| Ok::<f64, String>(ours("automatic-longest-step")?["checksum"][key].as_f64().unwrap_or(f64::NAN));
-    let (longest, median, first) = (ns("longest_ns")?, ns("median_ns")?, ns("first_ns")?);
-    let verdict = if longest <= LONGEST_STEP { "ok" } else { "MISS" };
-    println!("automatic-longest-step {longest:.0} ns, at most {LONGEST_STEP} ns: {verdict}");
-    println!("median {median:.0} ns; the longest that meets a mode for the first time {:.1} us", 1e-3 * first);
-    Ok(())
-}
-
-/// Sweeps through the command line: wall time of the whole program, the best of several runs.
-fn study(root: &Path, python: &Path, wrong: &mut Vec<String>) -> Result<(), String> {
-    println!("sweeps …");
-    command(Command::new("cargo").current_dir(root).args([
-        "build",
-        "--profile",
-        "dist",
-        "--quiet",
-        "-p",
-        "willis-cli",
-    ]))?;
-    let willis = root.join("target/dist/willis");
-    let mut c = Command::new(python);
-    c.current_dir(root.join("benches/baselines")).args(["study.py", "--json"]).env("PYTHONDONTWRITEBYTECODE", "1");
-    let out = c.output().map_err(|e| e.to_string())?;
-    if !out.status.success() {
-        return Err(format!("study.py: {}", String::from_utf8_lossy(&out.stderr)));
-    }
-    let peers = lines(&String::from_utf8_lossy(&out.stdout))?;
-    let run = |arguments: &[&str], runs: usize| -> Result<(f64, Value), String> {
-        let mut best = f64::INFINITY;
-        let mut told = Value::Null;
-        for _ in 0..runs {
-            let started = std::time::Instant::now();
-            let out = Command::new(&willis).current_dir(root).args(arguments).output().map_err(|e| e.to_string())?;
-            best = best.min(started.elapsed().as_secs_f64());
-            if !out.status.success() {
-                return Err(String::from_utf8_lossy(&out.stderr).into_owned());
-            }
-            told = serde_json::from_slice(&out.stdout).map_err(|e| e.to_string())?;
+/// Wall time of a whole program, the best of several runs, and what it printed.
+fn timed(program: &Path, root: &Path, arguments: &[&str], runs: usize) -> Result<(Measured, Vec<u8>), String> {
+    let mut all = Vec::new();
+    let mut told = Vec::new();
+    for _ in 0..runs {
+        let started = Instant::now();
+        let out = Command::new(program).current_dir(root).args(arguments).output().map_err(|e| e.to_string())?;
+        all.push(started.elapsed().as_secs_f64());
+        if !out.status.success() {
+            return Err(format!("{arguments:?}: {}", String::from_utf8_lossy(&out.stderr)));
         }
-        Ok((best, told))
-    };
+        told = out.stdout;
+    }
+    all.sort_by(f64::total_cmp);
+    Ok((Measured { value: all[0], spread: all[runs / 2] / all[0] - 1.0 }, told))
+}
+
+/// Whole commands: wall time of the program.
+fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Result<(), String> {
+    let root = &results.root;
+    let willis = root.join("target/dist/willis");
+    let run = |arguments: &[&str], runs: usize| timed(&willis, root, arguments, runs);
     let map = ["sweep", "benches/map.toml", "--study", "map", "--fast", "--format", "json", "--threads"];
+    let folder = root.join("target/willis-bench");
+    let out = |name: &str| folder.join(name).to_string_lossy().into_owned();
     let on = |threads: &'static str| [&map[..], &[threads]].concat();
-    println!("\n{:24} {:20} {:>12} {:>12} {:>8} {:>8}", "task", "peer", "peer Mpt/s", "Willis Mpt/s", "ratio", "goal");
+    let mut two = f64::NAN;
     for threads in ["1", "2"] {
         let (seconds, told) = run(&on(threads), 15)?;
+        let told: Value = serde_json::from_slice(&told).map_err(|e| e.to_string())?;
         let points = told["points"].as_f64().unwrap_or(f64::NAN);
-        for peer in &peers {
+        two = seconds.value;
+        for peer in results.peers.iter().filter(|v| v["task"] == "study-map") {
             for quantity in ["efficiency", "loss_w"] {
                 let own = &told["summary"][quantity];
                 let mean = own["sum"].as_f64().unwrap_or(f64::NAN) / points;
@@ -244,61 +404,34 @@ fn study(root: &Path, python: &Path, wrong: &mut Vec<String>) -> Result<(), Stri
                     }
                 }
             }
-            let theirs = peer["points_per_s"].as_f64().unwrap_or(f64::NAN);
             let name = peer["peer"].as_str().unwrap_or_default();
-            let goal = (name == "numpy-whole-array").then_some(20.0);
-            let ratio = points / seconds / theirs;
-            let task = format!("study-map, {threads} threads");
-            let mpt = points / seconds / 1e6;
-            println!("{task:24} {name:20} {:12.2} {mpt:12.2} {ratio:8.2} {:>8}", theirs / 1e6, verdict(ratio, goal));
+            let goal = if name == "numpy-whole-array" && threads == "2" { Times(20.0) } else { Goal::None };
+            let ours = Measured { value: points / seconds.value, ..seconds };
+            let what = format!("sweep of 1e7 points, {threads} threads");
+            table.row(&what, name, peer["points_per_s"].as_f64(), ours, true, goal, "");
         }
     }
-    // A physical map: bearings, seals, windage.
-    let table = root.join("target/willis-bench/physical.parquet");
-    let table = table.to_str().ok_or("a path that is no text")?;
-    let physical = [
-        "sweep",
-        "examples/fva-planetary-stage.toml",
-        "--over",
-        "sun.speed=100..3000 rpm:100",
-        "--over",
-        "sun.torque=50..1600 N m:100",
-        "--format",
-        "json",
-        "--threads",
-    ];
-    let on = |threads: &'static str, more: &[&'static str]| [&physical[..], &[threads], more].concat();
-    let (one, _) = run(&on("1", &[]), 3)?;
-    let (two, _) = run(&on("2", &[]), 3)?;
-    let with_table = [&physical[..], &["1", "--force", "--out", table]].concat();
-    let (written, _) = run(&with_table, 3)?;
-    println!("physical map of 10,000 points: {:.0} points/s on one thread, {:.0} on two", 1e4 / one, 1e4 / two);
-    println!("two threads: {:.2} times one: {}", one / two, verdict(one / two, Some(1.8)));
-    let share = (written / one - 1.0).max(0.0);
-    let reached = if share <= 0.3 { "ok" } else { "MISS" };
-    println!("writing Parquet: {:.1} % of the time to compute, at most 30 %: {reached}", 100.0 * share);
+    let table_file = out("map.parquet");
+    let (written, _) = run(&[&on("2")[..], &["--force", "--out", &table_file]].concat(), 5)?;
+    table.row("the same, into Parquet", "without a table", Some(two), written, false, Times(1.0 / 1.5), "");
+
+    let physical = |more: &[&'static str]| {
+        let sweep = ["sweep", "examples/fva-planetary-stage.toml", "--over", "sun.speed=100..3000 rpm:100", "--over"];
+        [&sweep[..], &["sun.torque=50..1600 N m:100", "--format", "json", "--threads"], more].concat()
+    };
+    let (one, _) = run(&physical(&["1"]), 5)?;
+    let (both, _) = run(&physical(&["2"]), 5)?;
+    table.row("physical map, two threads", "one thread", Some(one.value), both, false, Times(1.8), "2");
+    let file = out("physical.parquet");
+    let (written, _) = run(&[&physical(&["1"])[..], &["--force", "--out", &file]].concat(), 5)?;
+    table.row("physical map, into Parquet", "without a table", Some(one.value), written, false, Times(1.0 / 1.3), "1");
+
+    let (analyzed, _) = run(&["analyze", "examples/zf-8hp70.toml"], 25)?;
+    table.row("command: analyze 8HP70", "", None, analyzed, false, Most(4e-3), "");
+    let report = out("report.html");
+    let (reported, _) = run(&["report", "examples/zf-8hp70.toml", "--force", "--out", &report], 7)?;
+    table.row("command: report 8HP70", "", None, reported, false, Most(0.3), "");
     Ok(())
-}
-
-/// Whether as much as asked for was reached.
-fn verdict(value: f64, goal: Option<f64>) -> String {
-    let Some(goal) = goal else { return String::new() };
-    let number = if goal < 1e4 { goal.to_string() } else { format!("{goal:.1e}") };
-    format!("{number} {}", if value >= goal { "ok" } else { "MISS" })
-}
-
-/// Seconds of the best sample of a criterion task.
-fn best(root: &Path, task: &str) -> Result<f64, String> {
-    for group in ["map", "automatic", "cold", "motion"] {
-        let file = root.join(format!("target/criterion/{group}/{task}/new/sample.json"));
-        let Ok(text) = fs::read_to_string(file) else { continue };
-        let v: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
-        let numbers =
-            |key: &str| -> Vec<f64> { v[key].as_array().into_iter().flatten().filter_map(Value::as_f64).collect() };
-        let each = numbers("times").into_iter().zip(numbers("iters")).map(|(t, n)| t / n * 1e-9);
-        return each.min_by(f64::total_cmp).ok_or_else(|| format!("{task}: no samples"));
-    }
-    Err(format!("{task}: criterion left no samples"))
 }
 
 fn lines(text: &str) -> Result<Vec<Value>, String> {

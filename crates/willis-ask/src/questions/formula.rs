@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
-use willis::named::Named;
+use willis::named::NameMap;
 use willis::regimes::{self, ClosedFormula, Derivative, Efficiencies, EfficiencyBasis, FormulaRequest, Ratios};
 use willis::symbolic::Notation;
 use willis::work::Work;
@@ -135,7 +135,7 @@ pub struct OneFormula {
     /// Terminals where power leaves.
     pub outputs: Vec<String>,
     /// The member that drives each element; null where none does.
-    pub drivers: Named<Option<String>>,
+    pub drivers: NameMap<Option<String>>,
     /// The efficiency.
     pub efficiency: Written,
     /// Its value with the arguments' own values, as a fraction and as a number; absent at a pole.

@@ -72,7 +72,7 @@ impl Question for Validate {
 
     fn ask(&self, _: &[Given], _: &dyn Work) -> Result<ValidateAnswer, Refusal> {
         let Some(name) = &self.case else {
-            let case = |c: &casebook::Case| OneCase { name: c.name.to_owned(), about: c.about.to_owned() };
+            let case = |c: &casebook::ValidationCase| OneCase { name: c.name.to_owned(), about: c.about.to_owned() };
             let cases = casebook::CASES.iter().map(case).collect();
             return Ok(ValidateAnswer::Cases(Cases { format: Format::new(), cases }));
         };

@@ -4,13 +4,13 @@
 //! long way to a part in 10¹². Whatever is not plain is asked the long way: points that have not exactly one equilibrium, that
 //! lie on a border, or that differ from the first answer in what stands still.
 
-use willis::compiled::{CompiledTrain, Duty, Output, PointVerdict as Compiled, Workspace};
-use willis::model::{Target, Who};
+use willis::compiled::{CompileRequest, CompiledOutput, CompiledTrain, PointVerdict as Compiled, Workspace};
+use willis::model::{ShaftRef, Target};
 use willis::study::{PointAnswer, PointVerdict};
 use willis::train::{FRAME, Load, MemberId, Operation, Train};
 use willis::unstable;
 
-use super::told::{Told, Way, ways};
+use super::told::{PowerRole, Told, ways};
 
 /// Powers below this part of the largest may be round-off.
 const ROUND_OFF: f64 = 1e-9;
@@ -36,7 +36,7 @@ struct Part {
     speed: usize,
     carrier: Option<usize>,
     /// What it is where its power is positive, and negative.
-    ways: [Way; 2],
+    ways: [PowerRole; 2],
     /// Its place among all ways.
     place: usize,
     /// It neither took nor gave power in the first answer.
@@ -53,7 +53,7 @@ pub struct CompiledProbe {
     /// How many of them are terminals.
     terminals: usize,
     /// The ways of the first answer.
-    first: Vec<Way>,
+    first: Vec<PowerRole>,
     /// The speed and the torque of the input, as columns.
     input: Option<[usize; 2]>,
     out: Vec<f64>,
@@ -87,13 +87,13 @@ impl CompiledProbe {
                     _ => continue,
                 };
                 let named = match who {
-                    Who::Member(m) => Some(*m),
-                    Who::Input => train_input,
-                    Who::Output => train_output,
+                    ShaftRef::Member(m) => Some(*m),
+                    ShaftRef::Input => train_input,
+                    ShaftRef::Output => train_output,
                 };
                 if named == Some(member) {
                     // A torque that drives turns with its member: within a quadrant it does not where one speed moves all.
-                    let turns = !speed && !matches!(who, Who::Member(_)) && moving > 1;
+                    let turns = !speed && !matches!(who, ShaftRef::Member(_)) && moving > 1;
                     return if turns { None } else { Some(Some(k)) };
                 }
             }
@@ -116,8 +116,8 @@ impl CompiledProbe {
             return None;
         }
 
-        let mut outputs = vec![Output::Efficiency, Output::Loss];
-        let mut column = |o: Output| {
+        let mut outputs = vec![CompiledOutput::Efficiency, CompiledOutput::Loss];
+        let mut column = |o: CompiledOutput| {
             outputs.iter().position(|own| *own == o).unwrap_or_else(|| {
                 outputs.push(o);
                 outputs.len() - 1
@@ -130,27 +130,27 @@ impl CompiledProbe {
         for &m in train.terminals() {
             let place = solution.members.iter().position(|(n, _)| *n == train.member_name(m))?;
             parts.push(Part {
-                torque: column(Output::Torque(name(m))),
-                speed: column(Output::Speed(name(m))),
+                torque: column(CompiledOutput::Torque(name(m))),
+                speed: column(CompiledOutput::Speed(name(m))),
                 carrier: None,
-                ways: [Way::Input, Way::Output],
+                ways: [PowerRole::Input, PowerRole::Output],
                 place,
-                idle: !matches!(first[place], Way::Input | Way::Output),
+                idle: !matches!(first[place], PowerRole::Input | PowerRole::Output),
             });
         }
         let terminals = parts.len();
         let members = solution.members.0.len();
         for chain in unstable::chains(train, operation) {
             let leading = train.meshes().get(chain[0].index())?;
-            let torque = column(Output::MeshTorque(leading.name.clone()));
-            let speed = column(Output::Speed(name(leading.gears[0].member)));
-            let carrier = (leading.carrier != FRAME).then(|| column(Output::Speed(name(leading.carrier))));
+            let torque = column(CompiledOutput::MeshTorque(leading.name.clone()));
+            let speed = column(CompiledOutput::Speed(name(leading.gears[0].member)));
+            let carrier = (leading.carrier != FRAME).then(|| column(CompiledOutput::Speed(name(leading.carrier))));
             // Power runs through all meshes of a chain the same way: as in the first answer, or against it.
             let mut turned = None;
             for mesh in chain.iter().map(|m| &train.meshes()[m.index()]) {
                 let place = members + solution.meshes.iter().position(|(n, _)| *n == mesh.name)?;
-                let [driving, driven] = mesh.gears.each_ref().map(|g| Way::Driver(g.member));
-                let idle = first[place] == Way::Idle;
+                let [driving, driven] = mesh.gears.each_ref().map(|g| PowerRole::Driver(g.member));
+                let idle = first[place] == PowerRole::Idle;
                 let turned = *turned.get_or_insert(first[place] == driven);
                 let ways = match (first[place] == driving, turned) {
                     _ if idle => [driving, driven],
@@ -163,14 +163,14 @@ impl CompiledProbe {
         if parts.len() != terminals + train.meshes().len() {
             return None;
         }
-        let input = input.map(|m| [column(Output::Speed(name(m))), column(Output::Torque(name(m)))]);
+        let input = input.map(|m| [column(CompiledOutput::Speed(name(m))), column(CompiledOutput::Torque(name(m)))]);
         let names = |all: Vec<MemberId>| all.into_iter().map(name).collect::<Vec<_>>();
         let given = [
             names(operation.speeds.iter().map(|s| s.0).collect()),
             names(operation.loads.iter().map(|l| l.0).collect()),
         ];
         let [given_speeds, given_torques] = given.each_ref().map(|g| g.iter().map(String::as_str));
-        let mut duty = Duty::new(given_speeds, given_torques);
+        let mut duty = CompileRequest::new(given_speeds, given_torques);
         if let Some(k) = operation.state {
             duty = duty.state(&train.states()[k].name);
         }
@@ -178,7 +178,7 @@ impl CompiledProbe {
             duty = duty.fixed(train.member_name(*m));
         }
         let out = vec![0.0; outputs.len()];
-        let compiled = outputs.into_iter().fold(duty, Duty::output);
+        let compiled = outputs.into_iter().fold(duty, CompileRequest::output);
         let train = train.compile(&compiled).ok()?;
         let work = train.workspace();
         let mut own = Self { train, work, speeds, torques, parts, terminals, first, input, out };

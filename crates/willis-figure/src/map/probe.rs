@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use willis::diagnostic::Diagnostics;
 use willis::model::Target;
-use willis::study::{Axis, PointAnswer, PointAnswers, PointVerdict, Question, Trains};
+use willis::study::{Axis, PointAnswer, PointAnswers, PointSetup, PointVerdict, TrainCache};
 use willis::train::{MemberId, Operation, Train};
 use willis::work::{self, Cancelled, Work};
 
 use super::compiled::CompiledProbe;
-use super::told::{Told, Way};
+use super::told::{PowerRole, Told};
 use crate::parts::axes::RPM;
 use crate::{MapPoint, MapVerdict};
 
@@ -37,16 +37,16 @@ impl Limits {
 const PARTS: usize = 8;
 
 /// The limits, and the states between which the choice is, with their ratios where these are known.
-pub type Choice = (Limits, Vec<(String, Option<f64>)>);
+pub type ShiftChoice = (Limits, Vec<(String, Option<f64>)>);
 
 /// Answers at places of a map.
 pub struct Probe<'q, 's> {
-    question: &'q Question<'s>,
+    question: &'q PointSetup<'s>,
     /// The quantities along the axes, with their units.
     axes: [(Target, String); 2],
     /// Of an automatic transmission: what limits the choice.
-    choice: Option<Choice>,
-    trains: Trains,
+    choice: Option<ShiftChoice>,
+    trains: TrainCache,
     /// Answers where all places are points of the train of the file.
     answers: Option<PointAnswers<'s>>,
     /// Compiled trains by state and quadrant of the map, and how often none was possible.
@@ -64,7 +64,7 @@ struct Zone {
     verdict: MapVerdict,
     best: Option<usize>,
     /// Empty where there is no efficiency: there power goes nowhere.
-    ways: Vec<Way>,
+    ways: Vec<PowerRole>,
 }
 
 /// A point of a map as it was found.
@@ -93,7 +93,11 @@ impl Loosest {
 }
 
 impl<'q, 's> Probe<'q, 's> {
-    pub fn new(question: &'q Question<'s>, axes: [&Axis; 2], choice: Option<Choice>) -> Result<Self, Diagnostics> {
+    pub fn new(
+        question: &'q PointSetup<'s>,
+        axes: [&Axis; 2],
+        choice: Option<ShiftChoice>,
+    ) -> Result<Self, Diagnostics> {
         let target = |a: &Axis| Target::parse(&a.name, question.model()).map(|t| (t, a.unit.clone()));
         let targets = axes.map(target);
         let [x, y] = targets.map(|t| t.map_err(|d| Diagnostics::from_iter([*d])));
@@ -133,7 +137,7 @@ impl<'q, 's> Probe<'q, 's> {
             // Rows that lie side by side have much in common.
             let parts: Vec<&[Vec<[f64; 2]>]> = rows_unseen.chunks(rows_unseen.len().div_ceil(PARTS).max(1)).collect();
             let told = work::map(work, parts.len(), |k| {
-                let mut trains = Trains::default();
+                let mut trains = TrainCache::default();
                 let mut part: Vec<Told> = vec![];
                 let places = parts[k].iter().flatten().take_while(|_| !work.cancelled());
                 let points = places.map(|place| asked(question, axes, *place, None, &mut trains));
@@ -183,8 +187,8 @@ impl<'q, 's> Probe<'q, 's> {
     }
 
     /// A point with its zone.
-    fn noted(&mut self, point: MapPoint, ways: Vec<Way>) -> Found {
-        let idle = ways.iter().filter(|w| **w == Way::Idle).count();
+    fn noted(&mut self, point: MapPoint, ways: Vec<PowerRole>) -> Found {
+        let idle = ways.iter().filter(|w| **w == PowerRole::Idle).count();
         if point.verdict == MapVerdict::Point(PointVerdict::Unique) {
             let least = self.loosest.0.entry(point.best).or_insert(idle);
             *least = idle.min(*least);
@@ -199,7 +203,7 @@ impl<'q, 's> Probe<'q, 's> {
     }
 
     /// The state that loses least of those within the limits.
-    fn best(&mut self, place: [f64; 2], (limits, states): &Choice) -> (MapPoint, Vec<Way>) {
+    fn best(&mut self, place: [f64; 2], (limits, states): &ShiftChoice) -> (MapPoint, Vec<PowerRole>) {
         /// Efficiencies that differ by less are the same: the first state stays.
         const SAME: f64 = 1e-12;
         let mut best = (MapPoint::beyond(), vec![]);
@@ -269,11 +273,11 @@ impl<'q, 's> Probe<'q, 's> {
 
 /// What is asked at a place of these axes, in a state where one is given.
 fn asked(
-    question: &Question<'_>,
+    question: &PointSetup<'_>,
     axes: &[(Target, String); 2],
     place: [f64; 2],
     state: Option<&str>,
-    trains: &mut Trains,
+    trains: &mut TrainCache,
 ) -> Result<(Arc<Train>, Operation), Diagnostics> {
     let along = axes.iter().zip(place).map(|((target, unit), value)| (target, format!("{value} {unit}")));
     let mut settings: Vec<(&Target, String)> = along.map(|(t, v)| (t, v.trim_end().to_owned())).collect();

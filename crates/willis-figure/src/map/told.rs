@@ -6,7 +6,7 @@ use willis::train::MemberId;
 
 /// Which way power goes through a part.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Way {
+pub enum PowerRole {
     /// It neither gives nor takes power.
     Idle,
     /// A member at which power comes in.
@@ -31,7 +31,7 @@ pub struct Told {
     pub loss_w: Option<f64>,
     /// Speed and torque of the input that was asked for, rad/s and N m.
     pub input: Option<[f64; 2]>,
-    pub ways: Vec<Way>,
+    pub ways: Vec<PowerRole>,
 }
 
 impl Told {
@@ -54,20 +54,20 @@ impl Told {
 }
 
 /// Which way power goes through every part that can change it.
-pub fn ways(answer: &PointAnswer) -> Vec<Way> {
+pub fn ways(answer: &PointAnswer) -> Vec<PowerRole> {
     let Some(s) = &answer.numbers else { return vec![] };
     let members = s.members.iter().map(|m| match m.role {
-        Role::Input => Way::Input,
-        Role::Output => Way::Output,
-        Role::Idle => Way::Idle,
-        _ => Way::Passes,
+        Role::Input => PowerRole::Input,
+        Role::Output => PowerRole::Output,
+        Role::Idle => PowerRole::Idle,
+        _ => PowerRole::Passes,
     });
-    let meshes = s.drivers.iter().map(|driver| driver.map_or(Way::Idle, Way::Driver));
+    let meshes = s.drivers.iter().map(|driver| driver.map_or(PowerRole::Idle, PowerRole::Driver));
     let variators = answer.solution.iter().flat_map(|s| s.variators.iter());
     let machines = variators.flat_map(|(_, v)| v.machines.iter()).map(|(_, m)| match m.power_w {
-        w if w > 0.0 => Way::Motors,
-        w if w < 0.0 => Way::Generates,
-        _ => Way::Idle,
+        w if w > 0.0 => PowerRole::Motors,
+        w if w < 0.0 => PowerRole::Generates,
+        _ => PowerRole::Idle,
     });
     members.chain(meshes).chain(machines).collect()
 }

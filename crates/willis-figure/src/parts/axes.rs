@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
-use willis::study::{Axis, Question};
+use willis::study::{Axis, PointSetup};
 use willis::train::{Load, MemberId};
 use willis::units::Quantity;
 
@@ -83,13 +83,13 @@ fn range(name: &str, most: f64, negative: bool, unit: &str, steps: usize) -> Str
 pub const RPM: f64 = std::f64::consts::PI / 30.0;
 
 /// Speeds of a member in all operations, rpm.
-pub fn most_speed(question: &Question<'_>, member: MemberId) -> f64 {
+pub fn most_speed(question: &PointSetup<'_>, member: MemberId) -> f64 {
     let all = question.model().train().operations().iter().flat_map(|o| &o.speeds);
     largest(all.filter(|s| s.0 == member).map(|s| s.1.si() / RPM), 6000.0)
 }
 
 /// Torques on a member in all operations, N m.
-pub fn most_torque(question: &Question<'_>, member: MemberId) -> f64 {
+pub fn most_torque(question: &PointSetup<'_>, member: MemberId) -> f64 {
     let all = question.model().train().operations().iter().flat_map(|o| &o.loads);
     let torques = all.filter(|l| l.0 == member).filter_map(|l| match &l.1 {
         Load::Torque(t) => Some(t.si()),
@@ -103,7 +103,7 @@ fn si(q: &Quantity) -> f64 {
 }
 
 /// The speed that a chart of this operating point runs over, where nothing else is asked for.
-pub fn usual_speed(question: &Question<'_>, steps: usize) -> String {
+pub fn usual_speed(question: &PointSetup<'_>, steps: usize) -> String {
     let train = question.model().train();
     match question.base().speeds.first() {
         None => range("input.speed", 6000.0, false, "rpm", steps),
@@ -115,7 +115,7 @@ pub fn usual_speed(question: &Question<'_>, steps: usize) -> String {
 }
 
 /// The load (of a train with several freedoms: the second speed) that a map of this operating point runs over.
-pub fn usual_load(question: &Question<'_>, steps: usize) -> String {
+pub fn usual_load(question: &PointSetup<'_>, steps: usize) -> String {
     let (train, base) = (question.model().train(), question.base());
     if let [_, (member, speed), ..] = &base.speeds[..] {
         let name = format!("{}.speed", train.member_name(*member));
@@ -140,7 +140,7 @@ pub fn usual_load(question: &Question<'_>, steps: usize) -> String {
 }
 
 /// The operating point in words, and what of it was chosen here.
-pub fn basis(question: &Question<'_>, over: &[&Axis]) -> String {
+pub fn basis(question: &PointSetup<'_>, over: &[&Axis]) -> String {
     let train = question.model().train();
     let base = question.base();
     let state = base.state.map(|k| format!(", state {}", train.states()[k].name)).unwrap_or_default();

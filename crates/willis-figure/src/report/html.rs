@@ -13,7 +13,7 @@ use crate::parts::style::{self, FAINT, INK, LINE, PAPER, wide};
 use crate::parts::theme::{colours, dark, rules};
 use crate::report::document::{Block, Column, Document, Level, Section, Term};
 use crate::report::formula::{Display, mathml};
-use crate::report::paper::{self, Extent, MM, Place};
+use crate::report::paper::{self, FigureSize, MM, Place};
 
 /// Colours of the page by the names that its style sheet uses.
 const PAGE: [(&str, &str); 10] = [
@@ -200,7 +200,7 @@ pub(super) fn fits_text(svg: &str) -> bool {
 /// Where a figure goes on paper; nothing is known of one without a size.
 fn place(svg: &str) -> Option<Place> {
     let number = |name: &str| attribute(svg, name)?.parse::<f64>().ok().filter(|x| *x > 0.0);
-    let extent = Extent { size: [number("width")?, number("height")?], smallest: Some(Drawing::SMALLEST_TEXT) };
+    let extent = FigureSize { size: [number("width")?, number("height")?], smallest: Some(Drawing::SMALLEST_TEXT) };
     Some(extent.place(PAPER_SIZE))
 }
 

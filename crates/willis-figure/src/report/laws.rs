@@ -1,7 +1,7 @@
 //! What was assumed, which laws were in force with their sources and ranges, and how to do it all again.
 
 use willis::diagnostic::{Code, Diagnostic, Severity};
-use willis::losses::{Entry, Tag, Trust, entries};
+use willis::losses::{LawSummary, Tag, Trust, entries};
 use willis::units::for_people;
 
 use super::Findings;
@@ -42,7 +42,7 @@ pub fn in_force(all: &Findings<'_>) -> Option<Section> {
     used.sort_unstable();
     used.dedup();
     let catalogue = entries();
-    let laws: Vec<&Entry> = catalogue.iter().filter(|e| used.contains(&e.id)).collect();
+    let laws: Vec<&LawSummary> = catalogue.iter().filter(|e| used.contains(&e.id)).collect();
     let columns = ["Family", "Law", "Source", "Holds for", "Checked"].map(Column::words).into();
     let rows: Vec<Vec<String>> = laws.iter().map(|e| row(e)).collect();
     let mut blocks = vec![];
@@ -81,7 +81,7 @@ fn cited(key: &str) -> String {
     format!("{name} {}", number.replace('_', "-"))
 }
 
-fn row(e: &Entry) -> Vec<String> {
+fn row(e: &LawSummary) -> Vec<String> {
     let number = |x: f64| if x.is_finite() { significant(x, 4) } else { String::new() };
     let range = |r: &(&str, &str, f64, f64)| {
         let (symbol, unit, low, high) = *r;

@@ -30,14 +30,14 @@ pub enum Place {
 
 /// A figure as far as its place goes, in units of the figure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extent {
+pub struct FigureSize {
     /// Width and height.
     pub size: [f64; 2],
     /// The size of its smallest text; none where it has no text.
     pub smallest: Option<f64>,
 }
 
-impl Extent {
+impl FigureSize {
     /// Points to a unit at which the smallest text has its size.
     pub fn least(&self) -> f64 {
         self.smallest.map_or(0.0, |size| SMALLEST / size)
@@ -86,7 +86,7 @@ mod tests {
             let mut pages = vec![];
             for width in (100..12_000).step_by(130).map(f64::from) {
                 for height in [100.0, 700.0, 1500.0, 9000.0] {
-                    let own = Extent { size: [width, height], smallest: Some(11.0) };
+                    let own = FigureSize { size: [width, height], smallest: Some(11.0) };
                     let (wide, page, edges) = match own.place(paper) {
                         Place::Text(wide) => (wide, paper, [EDGES[0] - INTO_MARGINS, EDGES[1]]),
                         Place::Page(page, wide) => (wide, page, PLATE_EDGES),
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn what_fits_stands_in_the_text() {
-        let place = |width: f64, smallest| Extent { size: [width, 600.0], smallest }.place(A4);
+        let place = |width: f64, smallest| FigureSize { size: [width, 600.0], smallest }.place(A4);
         assert!(matches!(place(770.0, Some(11.0)), Place::Text(w) if w <= 174.0 * MM + 1e-6));
         assert!(matches!(place(860.0, Some(11.0)), Place::Page([a, b], _) if a > b && a < 850.0));
         assert!(matches!(place(840.0, Some(11.0)), Place::Text(w) if w > 174.0 * MM && w < 190.0 * MM));

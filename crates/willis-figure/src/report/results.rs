@@ -4,7 +4,7 @@ use willis::analysis::{
     CertificateReport, Direction, HeatBasis, MachineReport, OperationReport, Role, SolutionReport, StateReport,
     VariatorReport, Verdict,
 };
-use willis::operating_point::Regime;
+use willis::operating_point::LubricationRegime;
 use willis::regimes::{ClosedFormula, FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
 use willis::symbolic::Notation;
@@ -449,7 +449,7 @@ fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
         .map(|(name, c)| {
             let n = |x: f64| significant(x, 4);
             let or = |x: Option<f64>| x.map_or("–".into(), |x| significant(x, 3));
-            let film = c.regime.map_or("–", Regime::words);
+            let film = c.regime.map_or("–", LubricationRegime::words);
             vec![
                 name.clone(),
                 or(c.friction),

@@ -4,7 +4,7 @@ use willis::train::{FRAME, MemberId, MeshId, ShiftElementKind, State, Train};
 
 use super::members::{Members, Net};
 use super::shapes::{self, Shape};
-use super::{JointKind, Way};
+use super::{JointKind, TerminalDirection};
 
 /// Planets on one carrier with their gears, or one ordinary pair, in every arrangement.
 #[derive(Clone)]
@@ -31,7 +31,7 @@ pub(super) struct Joint {
 #[derive(Clone)]
 pub(super) struct Exit {
     pub net: usize,
-    pub way: Option<Way>,
+    pub way: Option<TerminalDirection>,
     pub open: bool,
 }
 
@@ -113,8 +113,8 @@ impl Plan {
         }
         // Input first, then output: they choose their side.
         exits.sort_by_key(|e| match e.way {
-            Some(Way::In) => 0,
-            Some(Way::Out) => 1,
+            Some(TerminalDirection::In) => 0,
+            Some(TerminalDirection::Out) => 1,
             None => 2,
         });
         // A rotor without a gear stands at the border, so that its joints have somewhere to begin.
@@ -142,10 +142,10 @@ impl Plan {
 }
 
 /// What an end of the train does with power, where these are its input and its output.
-fn way(ends: [Option<usize>; 2], net: usize) -> Option<Way> {
+fn way(ends: [Option<usize>; 2], net: usize) -> Option<TerminalDirection> {
     match ends {
-        [Some(input), _] if input == net => Some(Way::In),
-        [_, Some(output)] if output == net => Some(Way::Out),
+        [Some(input), _] if input == net => Some(TerminalDirection::In),
+        [_, Some(output)] if output == net => Some(TerminalDirection::Out),
         _ => None,
     }
 }

@@ -12,7 +12,7 @@ use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{Columns, Drawing, GearRole, JointKind, Place, Stick, StickJoint, StickPiece, Way};
+use crate::{Columns, Drawing, GearRole, JointKind, Place, Stick, StickJoint, StickPiece, TerminalDirection};
 
 /// Length of a terminal's arrow.
 const ARROW: f64 = 40.0;
@@ -366,10 +366,10 @@ impl Sheet<'_> {
             let width = if loaded { THICK } else { THIN };
             labels.mark((x, y), (tip, y), 8.0);
             if t.open {
-                let out = t.way == Some(Way::Out);
+                let out = t.way == Some(TerminalDirection::Out);
                 let (end, back) = match t.way {
-                    Some(Way::Out) => (tip, x),
-                    Some(Way::In) => (x + side * 4.0, tip),
+                    Some(TerminalDirection::Out) => (tip, x),
+                    Some(TerminalDirection::In) => (x + side * 4.0, tip),
                     None => (x, tip),
                 };
                 let head = if t.way.is_some() { 14.0 * (end - back).signum() } else { 0.0 };

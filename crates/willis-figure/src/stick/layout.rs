@@ -1,6 +1,6 @@
 //! Order of the blocks, lines of the members, and the best of many tries.
 
-use super::Way;
+use super::TerminalDirection;
 use super::blocks::{Exit, Joint, Plan};
 use super::grid::{CLOSED, FREE, GROUND, Goal, Grid, Search};
 use super::shapes::{Point, Shape};
@@ -137,8 +137,8 @@ fn orders(plan: &Plan) -> Vec<Vec<usize>> {
             });
             for s in own {
                 sum += 2 * match e.way {
-                    Some(Way::In) => s.0,
-                    Some(Way::Out) => n as i32 - 1 - s.1,
+                    Some(TerminalDirection::In) => s.0,
+                    Some(TerminalDirection::Out) => n as i32 - 1 - s.1,
                     None => s.0.min(n as i32 - 1 - s.1),
                 };
             }
@@ -335,9 +335,9 @@ impl Layout {
             let right = self.grid.width - 1;
             let price = |p: Point| {
                 let wrong = match (p.0, e.way) {
-                    (0, Some(Way::Out)) => 50,
+                    (0, Some(TerminalDirection::Out)) => 50,
                     (0, _) => 0,
-                    (x, Some(Way::In)) if x == right => 50,
+                    (x, Some(TerminalDirection::In)) if x == right => 50,
                     (x, _) if x == right => 0,
                     _ => return None,
                 };
@@ -358,7 +358,7 @@ impl Layout {
 
     fn free_border(&self, plan: &Plan, e: &Exit) -> Option<Point> {
         let axis = self.axes[plan.axis_of[e.net]];
-        let x = if e.way == Some(Way::In) { 0 } else { self.grid.width - 1 };
+        let x = if e.way == Some(TerminalDirection::In) { 0 } else { self.grid.width - 1 };
         let mut rows: Vec<i32> = (0..self.grid.height).collect();
         rows.sort_by_key(|y| (y - axis).abs());
         let both = [x, self.grid.width - 1 - x];

@@ -158,16 +158,17 @@ fn a_constant_map_is_a_sentence() {
 #[test]
 fn points_are_those_of_the_analysis() {
     use willis::model::Target;
-    use willis::study::{Hold, PointAnswer, Question};
+    use willis::study::{Hold, PointAnswer, PointSetup};
     let (mut points, mut verdicts) = (0, std::collections::BTreeSet::new());
     for (name, _) in examples() {
         let own = model(&name);
         let Ok(map) = efficiency_map(&own, None, None, &[]) else { continue };
         let first = own.train().states().first().filter(|_| own.train().operations().is_empty());
-        let question = Question::new(&own, None, first.map(|s| s.name.as_str()), Hold::AsGiven).expect("it has a map");
+        let question =
+            PointSetup::new(&own, None, first.map(|s| s.name.as_str()), Hold::AsGiven).expect("it has a map");
         let [x, y] = [&map.x, &map.y].map(|a| Target::parse(&a.name, &own).expect("a quantity"));
         let width = map.x.values.len();
-        let mut trains = willis::study::Trains::default();
+        let mut trains = willis::study::TrainCache::default();
         let inner = |k: &usize| (1..width - 1).contains(&(k % width));
         for k in (0..map.points.len()).filter(inner).step_by(41) {
             let p = &map.points[k];

@@ -1,7 +1,7 @@
 //! Stick diagrams: their lines join what the train joins, and nothing else.
 
 use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Specification, Train};
-use willis_figure::{JointKind, Place, Stick, Way, stick};
+use willis_figure::{JointKind, Place, Stick, TerminalDirection, stick};
 
 use crate::trains::{examples, hard};
 
@@ -333,7 +333,7 @@ fn arrows_of_a_train_with_states_are_those_of_its_states() {
         }
         // A state that names its ends shows them.
         for (s, shown) in train.states().iter().zip(&own) {
-            for (end, way) in [(s.input, Way::In), (s.output, Way::Out)] {
+            for (end, way) in [(s.input, TerminalDirection::In), (s.output, TerminalDirection::Out)] {
                 let Some(end) = end.filter(|m| train.terminals().contains(m)) else { continue };
                 assert!(shown.contains(&(train.member_name(end).to_owned(), way)), "{name} {}: {shown:?}", s.name);
             }
@@ -401,7 +401,7 @@ fn powers_of_lines_balance_at_every_branch() {
                 if let [one] = own[..]
                     && one != 0.0
                 {
-                    let expected = if t.way == Some(Way::In) { 1.0 } else { -1.0 };
+                    let expected = if t.way == Some(TerminalDirection::In) { 1.0 } else { -1.0 };
                     assert!((one - expected).abs() < 1e-6, "{name} {state:?} {}: {one}", m.name);
                 }
             }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use willis::exact::Rational;
-use willis::named::Named;
+use willis::named::NameMap;
 use willis::train::ShiftElementKind;
 
 use super::layout::{GROUND, Layout, shaft_digit};
@@ -60,13 +60,13 @@ pub struct SchemeGear {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step: Option<f64>,
     /// Speed of every shaft.
-    pub speeds: Named<f64>,
+    pub speeds: NameMap<f64>,
     /// Speed of the planets of every set relative to their carrier.
-    pub planets: Named<f64>,
+    pub planets: NameMap<f64>,
     /// Torque of every closed element on the first of its shafts. Zero: it carries nothing.
-    pub torques: Named<f64>,
+    pub torques: NameMap<f64>,
     /// Slip of every open element, the speed of the first of its shafts less that of the second.
-    pub slips: Named<f64>,
+    pub slips: NameMap<f64>,
     /// Output over input power when the input drives, of the scheme's train file with the mesh efficiencies that it has
     /// ([`Schemes::rate`](super::Schemes::rate)).
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -307,7 +307,7 @@ impl Scheme {
         let named = |pair: [u8; 2]| pair.map(|s| names[usize::from(s)].clone());
         let own_elements = elements.iter().enumerate().map(|(e, pair)| {
             let name = letter(e);
-            let of = |all: fn(&SchemeGear) -> &Named<f64>| {
+            let of = |all: fn(&SchemeGear) -> &NameMap<f64>| {
                 let name = name.clone();
                 most(&mut shown().filter_map(|g| all(g).get(&name).copied()))
             };

@@ -5,7 +5,7 @@ use willis::analysis::Verdict;
 use willis::contract::{Contract, Format};
 use willis::diagnostic::Diagnostic;
 use willis::exact::Rational;
-use willis::named::Named;
+use willis::named::NameMap;
 
 use super::fit::Phase;
 use super::wish::Objective;
@@ -59,7 +59,7 @@ impl Contract for DesignAnswer {
 #[non_exhaustive]
 pub struct Space {
     /// By set, what its tooth numbers may be.
-    pub sets: Named<SetRange>,
+    pub sets: NameMap<SetRange>,
     /// How many choices of coaxial tooth numbers and numbers of planets there are.
     pub candidates: f64,
 }
@@ -70,7 +70,7 @@ pub struct Space {
 #[non_exhaustive]
 pub struct SetRange {
     /// By gear, its range as written.
-    pub teeth: Named<String>,
+    pub teeth: NameMap<String>,
     /// Numbers of planets.
     pub planets: Vec<i64>,
     /// Mismatches allowed.
@@ -106,8 +106,8 @@ pub struct Stage {
     /// The same with every number of planets and every short planet counted.
     pub designs: u64,
     /// Designs by number of planets, where only one set is designed.
-    #[serde(default, skip_serializing_if = "Named::is_empty")]
-    pub by_planets: Named<u64>,
+    #[serde(default, skip_serializing_if = "NameMap::is_empty")]
+    pub by_planets: NameMap<u64>,
 }
 
 impl Stage {
@@ -125,9 +125,9 @@ pub struct DesignRow {
     /// Its number in the list, from 1.
     pub number: u64,
     /// Designed sets.
-    pub sets: Named<SetRow>,
+    pub sets: NameMap<SetRow>,
     /// States with a target.
-    pub states: Named<StateRow>,
+    pub states: NameMap<StateRow>,
     /// Largest relative deviation from a target.
     pub error: f64,
     /// Reference diameter of the largest ring, m; absent where no module is given.
@@ -155,8 +155,8 @@ pub struct DesignRow {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub laws: Option<LawRow>,
     /// The operations of the file, with its laws of friction; shown rows only.
-    #[serde(default, skip_serializing_if = "Named::is_empty")]
-    pub operations: Named<OperationRow>,
+    #[serde(default, skip_serializing_if = "NameMap::is_empty")]
+    pub operations: NameMap<OperationRow>,
 }
 
 /// The losses that ranked trains.
@@ -263,7 +263,7 @@ pub struct OperationRow {
 #[non_exhaustive]
 pub struct SetRow {
     /// Tooth numbers by gear.
-    pub teeth: Named<i64>,
+    pub teeth: NameMap<i64>,
     /// Numbers of planets that follow all rules.
     pub planets: Vec<i64>,
     /// The one of them that the train file has.
@@ -277,7 +277,7 @@ pub struct SetRow {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub module_m: Option<f64>,
     /// Profile shifts by gear, positive outward; absent where there are none that suit.
-    pub shifts: Option<Named<f64>>,
+    pub shifts: Option<NameMap<f64>>,
 }
 
 /// A state of a train.

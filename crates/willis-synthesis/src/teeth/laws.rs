@@ -8,7 +8,7 @@
 
 use willis::Model;
 use willis::analysis::{OperationReport, Verdict, operate};
-use willis::named::Named;
+use willis::named::NameMap;
 use willis::train::{FRAME, Load, Operation, Train};
 use willis::work::Work;
 
@@ -38,7 +38,7 @@ pub(crate) struct Lawful {
     /// Operations that stand for either direction.
     names: [Vec<String>; 2],
     self_locking: bool,
-    pub operations: Named<OperationRow>,
+    pub operations: NameMap<OperationRow>,
 }
 
 /// A train with both rankings.
@@ -48,7 +48,7 @@ pub(crate) struct Ranked {
     /// By the mesh efficiencies.
     pub judged: Judged,
     pub laws: Option<LawRow>,
-    pub operations: Named<OperationRow>,
+    pub operations: NameMap<OperationRow>,
     /// By what ranks.
     pub value: Judged,
 }
@@ -214,7 +214,7 @@ impl Design {
     }
 
     /// What the laws make of one train, and its operations.
-    pub(crate) fn row_with_laws(&self, teeth: &Teeth, judged: &Judged) -> (Option<LawRow>, Named<OperationRow>) {
+    pub(crate) fn row_with_laws(&self, teeth: &Teeth, judged: &Judged) -> (Option<LawRow>, NameMap<OperationRow>) {
         let laws = self.lawful(teeth, &self.operation_names());
         let ranks = [laws.forward.is_some(), laws.backward.is_some()];
         let value = laws.value(judged, ranks).unwrap_or_else(|| judged.clone());

@@ -4,7 +4,7 @@ use willis::Model;
 use willis::analysis::{Selection, StateReport, Verdict, analyze};
 use willis::contract::Format;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::named::Named;
+use willis::named::NameMap;
 use willis::work::Work;
 
 use super::answer::{
@@ -317,7 +317,7 @@ impl Design {
     }
 
     /// The states of a train as the certified solver sees them.
-    pub(crate) fn certified(&self, teeth: &Teeth) -> Option<Named<StateReport>> {
+    pub(crate) fn certified(&self, teeth: &Teeth) -> Option<NameMap<StateReport>> {
         let text = self.text_of(teeth, None);
         let model = Model::from_toml(&text).ok()?;
         let train = willis::unstable::without_operations(model.train());
@@ -343,7 +343,7 @@ impl Design {
         let certified = self.certified(teeth);
         let y = self.variables(teeth);
         let mut all_unique = certified.is_some();
-        let states: Named<StateRow> = self
+        let states: NameMap<StateRow> = self
             .targets
             .iter()
             .map(|(k, target)| {
@@ -378,7 +378,7 @@ impl Design {
         let least = |of: fn(&StateRow) -> Option<f64>| {
             states.iter().map(|(_, s)| of(s)).try_fold(1.0f64, |a, e| e.map(|e| a.min(e)))
         };
-        let sets: Named<SetRow> = self
+        let sets: NameMap<SetRow> = self
             .sets
             .iter()
             .zip(teeth)
@@ -399,9 +399,9 @@ impl Design {
                 let hunting = space.kind.hunts(&all);
                 let phase: Phase = item.phase(0, chosen);
                 let shifts =
-                    s.shifts(z, short).map(|x| named.iter().map(|(n, _)| n.clone()).zip(x).collect::<Named<f64>>());
+                    s.shifts(z, short).map(|x| named.iter().map(|(n, _)| n.clone()).zip(x).collect::<NameMap<f64>>());
                 let module_m = self.module(s, space.ring(z));
-                (s.name.clone(), SetRow { teeth: Named(named), planets, chosen, hunting, phase, module_m, shifts })
+                (s.name.clone(), SetRow { teeth: NameMap(named), planets, chosen, hunting, phase, module_m, shifts })
             })
             .collect();
         let lock_margin = judged.lock_margin.is_finite().then_some(judged.lock_margin);
@@ -421,7 +421,7 @@ impl Design {
             element_torque: judged.element_torque,
             certified: all_unique,
             laws: None,
-            operations: Named::default(),
+            operations: NameMap::default(),
         }
     }
 
@@ -522,7 +522,7 @@ fn under_laws_in_stages(waterfall: &mut Vec<Stage>, trains: u64, demands: &[(Obj
         condition: condition.to_owned(),
         trains,
         designs: trains,
-        by_planets: Named::default(),
+        by_planets: NameMap::default(),
     };
     let others: Vec<Stage> =
         waterfall.drain(first..).filter(|s| !s.is_demand()).map(|s| stage(&s.condition, trains)).collect();

@@ -208,7 +208,7 @@ mod tests {
         {
             assert_eq!(z[2] - z[0] - 2 * z[1], off);
             let x = shifts(SetKind::Simple, &z, Rack::default()).unwrap_or_else(|| panic!("{z:?}"));
-            let chain = willis::geometry::Chain {
+            let chain = willis::geometry::SimpleSetGeometry {
                 module: 1e-3,
                 pressure_angle: 20f64.to_radians(),
                 helix: 0.0,

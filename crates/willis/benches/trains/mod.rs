@@ -1,4 +1,5 @@
-//! Trains in motion that benchmarks and tests share.
+//! Trains that benchmarks and tests share.
+#![allow(dead_code, reason = "each program uses its own")]
 
 use willis::train::Train;
 
@@ -94,4 +95,44 @@ pub fn automatic_text() -> String {
 /// The automatic.
 pub fn automatic() -> Train {
     Train::from_toml(&automatic_text()).unwrap()
+}
+
+/// A stage with teeth, bearings, seals and windage, and the axes of a map of it.
+pub const STAGE: &str = include_str!("../../../../examples/fva-planetary-stage.toml");
+
+/// The automatic with a drag on each shaft.
+pub fn automatic_with_drags() -> String {
+    let mut text = include_str!("../../../../examples/zf-8hp70.toml").to_owned();
+    for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
+        let values = "coulomb = \"0.2 N m\"\nviscous = \"1e-3 N m s/rad\"";
+        text += &format!("\n[[drag]]\nname = \"drag of {m}\"\nmembers = [\"{m}\"]\n{values}\n");
+    }
+    text
+}
+
+/// So many sets in series: the ring on the frame, the carrier of one drives the sun of the next; with an operation, and a
+/// scenario `run up` of one second.
+pub fn chain(sets: usize) -> String {
+    let name = |k: usize| format!("\"s{k}\"");
+    let members: Vec<String> = (0..=sets).map(name).collect();
+    let inertias: Vec<String> = (0..=sets).map(|k| format!("s{k} = \"{} kg m^2\"", 0.01 + 0.002 * k as f64)).collect();
+    let mut text = format!(
+        "format = 1\nname = \"sets in series\"\nmembers = [{}]\nterminals = [\"s0\", \"s{sets}\"]\ninput = \"s0\"\n\
+         output = \"s{sets}\"\ninertias = {{ {} }}\n",
+        members.join(", "),
+        inertias.join(", ")
+    );
+    for k in 0..sets {
+        // Ratios near two and three in turn, so that the figures of long chains stay in range.
+        let (sun, ring) = if k % 2 == 0 { (40, 41 + k % 5) } else { (30, 61 + k % 7) };
+        text += &format!(
+            "\n[[set]]\nname = \"P{k}\"\nsun = {{ member = \"s{k}\", teeth = {sun} }}\n\
+             ring = {{ member = \"frame\", teeth = {ring} }}\ncarrier = \"s{}\"\n\
+             mesh_efficiency = {{ external = 0.985, internal = 0.99 }}\n",
+            k + 1
+        );
+    }
+    text + "\n[[operation]]\nname = \"driven\"\nspeeds = { s0 = \"3000 rpm\" }\ntorques = { s0 = \"10 N m\" }\n\
+         \n[[scenario]]\nname = \"run up\"\nduration = \"1 s\"\n\
+         \n[[scenario.source]]\nname = \"engine\"\nmember = \"s0\"\ntorque = \"10 N m\"\n"
 }

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::losses::{self, Entry, FAMILIES, Tag};
+use crate::losses::{self, FAMILIES, LawSummary, Tag};
 use crate::operating_point::Physics;
 use crate::train::{LossPart, MemberId, Operation, Train};
 
 use super::operation::{Settled, settle_at};
-use super::{LossSource, Named, Verdict};
+use super::{LossSource, NameMap, Verdict};
 
 /// Kinds of loss below this part of all losses keep their law: ten times as much of one would still be a hundredth of the
 /// loss, far less than friction is uncertain by.
@@ -28,7 +28,7 @@ pub struct LawBand {
     /// The highest efficiency.
     pub high: BandEnd,
     /// By family, what its laws give while the other families keep theirs.
-    pub families: Named<FamilyBand>,
+    pub families: NameMap<FamilyBand>,
 }
 
 /// An end of a band, which `--law` reproduces.
@@ -41,7 +41,7 @@ pub struct BandEnd {
     /// All losses, W.
     pub loss_w: f64,
     /// The law of each family in the band.
-    pub laws: Named<String>,
+    pub laws: NameMap<String>,
 }
 
 /// The laws of one family.
@@ -54,7 +54,7 @@ pub struct FamilyBand {
     /// Whether that is inside its range here.
     pub in_range: bool,
     /// The efficiency with each law that counts.
-    pub efficiencies: Named<f64>,
+    pub efficiencies: NameMap<f64>,
     /// Whether these are counted although fewer than two laws are inside their ranges.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub beyond_ranges: bool,
@@ -93,7 +93,7 @@ impl LawBand {
                 let put = c.laws.iter().find(|l| l.0 == f.name).map_or(f.in_force, |l| l.1);
                 (f.name.to_owned(), put.to_owned())
             };
-            let laws = Named(families.iter().map(law).collect());
+            let laws = NameMap(families.iter().map(law).collect());
             BandEnd { efficiency: c.efficiency, loss_w: c.loss_w, laws }
         };
         let by = |a: &&Candidate, b: &&Candidate| a.efficiency.total_cmp(&b.efficiency);
@@ -101,7 +101,7 @@ impl LawBand {
         (low.efficiency < high.efficiency).then(|| Self {
             low,
             high,
-            families: Named(families.into_iter().map(|f| (f.name.to_owned(), f.told())).collect()),
+            families: NameMap(families.into_iter().map(|f| (f.name.to_owned(), f.told())).collect()),
         })
     }
 
@@ -178,7 +178,7 @@ fn outside(settled: &Settled<'_>) -> Vec<(String, String)> {
 }
 
 /// The families whose laws make a loss that is worth varying, and that no test has settled.
-fn varied(train: &Train, sources: &[LossSource], loss_w: f64, entries: &[Entry]) -> Vec<&'static str> {
+fn varied(train: &Train, sources: &[LossSource], loss_w: f64, entries: &[LawSummary]) -> Vec<&'static str> {
     let family = |s: &LossSource| {
         let own = |f: &&&'static str| entries.iter().any(|e| e.family == **f && e.id == s.law);
         s.kind.families().iter().find(own).copied()
@@ -211,7 +211,7 @@ struct Family {
 
 impl Family {
     /// `None` where there is no choice.
-    fn of(name: &'static str, base: &Base<'_>, own: &Seen, entries: &[Entry]) -> Option<Self> {
+    fn of(name: &'static str, base: &Base<'_>, own: &Seen, entries: &[LawSummary]) -> Option<Self> {
         let in_force = base.train.law_in_force(name)?;
         let is_outside = |law: &str, seen: &Seen| seen.outside.iter().any(|(f, l)| f == name && l == law);
         let chosen = entries.iter().filter(|e| {
@@ -254,7 +254,7 @@ impl Family {
         FamilyBand {
             law: self.in_force.to_owned(),
             in_range: self.in_range,
-            efficiencies: Named(self.counted.iter().map(|(law, s)| ((*law).to_owned(), s.efficiency)).collect()),
+            efficiencies: NameMap(self.counted.iter().map(|(law, s)| ((*law).to_owned(), s.efficiency)).collect()),
             beyond_ranges: self.beyond_ranges,
             left_out: self.left_out.into_iter().map(str::to_owned).collect(),
         }

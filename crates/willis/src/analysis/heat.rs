@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::heat::balance::Failed;
 use crate::heat::{Balance, Certificate, HeatVerdict, Limits, Source, balance, time_constants};
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::operating_point::{LossKind, Physics, Step};
 use crate::train::heat::{Heat, HeatPart, OIL};
 use crate::train::{Operation, Train};
@@ -66,7 +66,7 @@ pub struct HeatReport {
     /// Heat that reaches the oil less what leaves it, W: it warms where that is above zero.
     pub residual_w: f64,
     /// Every place.
-    pub places: Named<PlaceReport>,
+    pub places: NameMap<PlaceReport>,
     /// Every way for heat.
     pub paths: Vec<HeatFlow>,
     /// Heat that the cooler takes, W; negative where it heats.

@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
-use crate::losses::{self, Entry, Tag};
+use crate::losses::{self, LawSummary, Tag};
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::Quantity;
 
 use super::band::LawBand;
-use super::{Convergence, LossSource, Losses, Named, OutsideLaw, Verdict, Why, assumptions, operate_unnamed, words};
+use super::{Convergence, LossSource, Losses, NameMap, OutsideLaw, Verdict, Why, assumptions, operate_unnamed, words};
 
 /// Where to evaluate the losses of a train. An empty list leaves a quantity as the file has it.
 #[derive(Clone, Debug, Default)]
@@ -83,7 +83,7 @@ pub struct LossPoint {
     /// Losses by source, largest first.
     pub sources: Vec<LossSource>,
     /// Mean coefficient of friction of each mesh.
-    pub friction: Named<Option<f64>>,
+    pub friction: NameMap<Option<f64>>,
     /// How losses and torques were brought into agreement.
     pub convergence: Option<Convergence>,
     /// Warnings of this point.
@@ -207,7 +207,7 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
     if wrong.has_errors() {
         return Err(wrong);
     }
-    let laws: Vec<(Option<Entry>, Cow<'_, Train>)> = match &request.compare {
+    let laws: Vec<(Option<LawSummary>, Cow<'_, Train>)> = match &request.compare {
         // A law that needs what this train does not give is left out.
         Some(family) => (losses::entries().into_iter().filter(|e| e.family == *family))
             .filter_map(|e| train.clone().with_law(family, e.id).ok().map(|train| (Some(e), Cow::Owned(train))))
@@ -350,7 +350,7 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
         loss_w: solution.map_or(0.0, |s| s.loss_w),
         losses_w: solution.map_or(Losses::default(), |s| s.losses_w),
         sources: solution.map(|s| s.sources.clone()).unwrap_or_default(),
-        friction: Named(
+        friction: NameMap(
             solution.map(|s| s.contacts.iter().map(|(n, c)| (n.clone(), c.friction)).collect()).unwrap_or_default(),
         ),
         convergence: solution.and_then(|s| s.convergence),

@@ -6,7 +6,7 @@ use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, Ratio};
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::power_flow::{External, Flow, ties};
 use crate::train::{AS_DRAWN, Efficiency, FRAME, MemberId, MemberKind, ShiftElementId, ShiftElementKind, Train};
 
@@ -29,7 +29,7 @@ pub struct ShaftTable {
     /// Whether torques are those without losses.
     pub lossless: bool,
     /// Every state; the train as drawn where it has none.
-    pub states: Named<ShaftState>,
+    pub states: NameMap<ShaftState>,
     /// What the model leaves out, and what stands in for data that were not given.
     #[serde(default)]
     pub assumptions: Vec<String>,
@@ -121,11 +121,11 @@ pub struct ShaftState {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
     /// Every member, planets included.
-    pub members: Named<ShaftMember>,
+    pub members: NameMap<ShaftMember>,
     /// Every shift element.
-    pub shift_elements: Named<ShaftElement>,
+    pub shift_elements: NameMap<ShaftElement>,
     /// Torque that each member puts into each set, or mesh of no set, over the input torque.
-    pub sets: Named<Named<f64>>,
+    pub sets: NameMap<NameMap<f64>>,
     /// What it costs at a load and without one, where losses depend on that.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_load: Option<Box<AtLoad>>,
@@ -229,7 +229,7 @@ pub fn shaft_table(train: &Train, request: &ShaftTableRequest) -> Result<ShaftTa
         train: train.name.clone(),
         source: train.source.clone(),
         lossless,
-        states: Named(states),
+        states: NameMap(states),
         assumptions: assumptions(train),
         diagnostics: diagnostics.into_iter().collect(),
     })
@@ -314,7 +314,7 @@ fn row(train: &Train, engaged: &[ShiftElementId], ends: [Option<MemberId>; 2], l
     let sets = torques
         .iter()
         .flat_map(|t| &t.sets)
-        .map(|(set, members)| (set.clone(), Named(members.iter().map(|(m, torque)| (name(*m), *torque)).collect())));
+        .map(|(set, members)| (set.clone(), NameMap(members.iter().map(|(m, torque)| (name(*m), *torque)).collect())));
     Some(ShaftState {
         input: name(input),
         output: name(output),
@@ -331,7 +331,7 @@ fn row(train: &Train, engaged: &[ShiftElementId], ends: [Option<MemberId>; 2], l
         shift_elements: (0..train.shift_elements.len())
             .map(|k| (train.shift_elements[k].name.clone(), of_element(k)))
             .collect(),
-        sets: Named(sets.collect()),
+        sets: NameMap(sets.collect()),
         at_load: None,
     })
 }

@@ -11,7 +11,7 @@ use super::doubts::doubts;
 use super::loads::Loads;
 use super::rounds::Agreed;
 use super::{
-    CirculationReport, Losses, MemberNumbers, MemberReport, MeshReport, Named, Role, ShiftElementReport,
+    CirculationReport, Losses, MemberNumbers, MemberReport, MeshReport, NameMap, Role, ShiftElementReport,
     SolutionReport, variators,
 };
 
@@ -47,15 +47,15 @@ impl Frame<'_> {
         let held = held(self.c, self.operation);
         let members =
             (1..train.members.len()).map(|m| (train.members[m].name.clone(), self.member(MemberId(m), &flow, &held)));
-        let members = Named(members.collect());
+        let members = NameMap(members.collect());
         let strains = self.physics.map(|(p, (step, _))| p.strains(step, &flow));
         let doubts = strains.as_ref().map_or_else(Vec::new, |s| doubts(train, flow.input_power, s));
-        let contacts = self.physics.map_or_else(Named::default, |(p, (step, _))| p.contacts(step, &flow));
+        let contacts = self.physics.map_or_else(NameMap::default, |(p, (step, _))| p.contacts(step, &flow));
         let (mut bearings, mut shaft_loads, mut extrapolations) = Default::default();
         if let (Some((physics, _)), Some(strains)) = (self.physics, strains) {
             bearings = physics.bearing_reports(&strains);
             let named = |(m, load): (MemberId, ShaftLoad)| (train.member_name(m).to_owned(), load);
-            shaft_loads = Named(strains.shafts.into_iter().map(named).collect());
+            shaft_loads = NameMap(strains.shafts.into_iter().map(named).collect());
             extrapolations = strains.extrapolations;
         }
         let meshes = flow.meshes.iter().map(|f| {
@@ -81,7 +81,7 @@ impl Frame<'_> {
             };
             (mesh.name.clone(), report)
         });
-        let meshes = Named(meshes.collect());
+        let meshes = NameMap(meshes.collect());
         let shift_elements = flow.ties.iter().map(|t| {
             let e = &train.shift_elements[t.element.0];
             let members = e.members.map(|m| train.member_name(m).to_owned());
@@ -110,7 +110,7 @@ impl Frame<'_> {
             power_residual_w: flow.residual,
             members,
             meshes,
-            shift_elements: Named(shift_elements.collect()),
+            shift_elements: NameMap(shift_elements.collect()),
             variators: variators::reports(train, &flow),
             beyond_limits: variators::beyond(train, &flow),
             losses_w,

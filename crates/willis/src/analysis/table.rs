@@ -2,13 +2,13 @@
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
-use crate::kinematics::{Configuration, Motion, Ratio};
+use crate::kinematics::{Configuration, Motion, Ratio, Transfer};
 use crate::power_flow::{self, demand};
 use crate::statics::{Answer, Certificate, Equilibrium, Solution, Unsolvable, torque};
 use crate::train::{MemberId, ShiftElementId, ShiftElementKind, Train};
 
 use super::words::{element_names, names};
-use super::{Direction, Named, StateReport, Verdict, Why};
+use super::{Direction, NameMap, StateReport, Verdict, Why};
 
 /// The row of a state; `None` when the train has no input and output.
 pub(super) fn row(
@@ -33,13 +33,14 @@ pub(super) fn row(
         }
     };
     let c = Configuration::new(train, engaged, &[], &[]);
-    let ratio = c.ratio(input, output);
+    let forward = c.transfer(&[input]);
+    let ratio = forward.ratio(output);
     let name_of = |m: MemberId| train.member_name(m).to_owned();
     let (exact, no_ratio) = match &ratio {
         Ratio::Exact(r) => (Some(r.clone()), None),
         Ratio::OutputAtRest => (None, Some(Why::OutputAtRest { output: name_of(output), input: name_of(input) })),
         Ratio::InputLocked => (None, Some(locked(&c, input))),
-        Ratio::Undetermined => (None, Some(free(&c, input, output))),
+        Ratio::Undetermined => (None, Some(free(&c, &forward, input, output))),
     };
     // A variator sets what the gears leave open.
     let varied = ratio == Ratio::Undetermined && !train.variators.is_empty();
@@ -66,7 +67,10 @@ pub(super) fn row(
             let none = Direction::without(Verdict::Undetermined, Why::RatioTooLarge);
             (none.clone(), none)
         }
-        Some(_) if redundant.is_empty() => (direction(&c, input, output, input), direction(&c, output, input, input)),
+        Some(ratio) if redundant.is_empty() => {
+            let backward = forward.seen_from_other(ratio);
+            (direction(&c, &forward, [input, output], input), direction(&c, &backward, [output, input], input))
+        }
         Some(_) => {
             let none = Direction::without(Verdict::Undetermined, Why::Indeterminate);
             (none.clone(), none)
@@ -107,7 +111,7 @@ pub(super) fn row(
         }
     }
     if exact.is_some() {
-        one_way_speeds(&c, input, &place, name, diagnostics);
+        one_way_speeds(&c, &forward, &place, name, diagnostics);
     }
     Some(StateReport {
         input: train.member_name(input).to_owned(),
@@ -125,7 +129,7 @@ pub(super) fn row(
 }
 
 /// Ratio of each state over that of the next one.
-pub(super) fn steps(ratios: &mut Named<StateReport>) {
+pub(super) fn steps(ratios: &mut NameMap<StateReport>) {
     for k in 1..ratios.0.len() {
         let [(_, a), (_, b)] = &ratios.0[k - 1..=k] else { unreachable!("two rows") };
         if let (Some(i), Some(j), true) = (a.value, b.value, (&a.input, &a.output) == (&b.input, &b.output)) {
@@ -169,8 +173,12 @@ impl Drive {
     /// Power from `from`, which turns forward, to a resisting load of one at `to`: the load is given, what drives it is
     /// found.
     pub fn new(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Result<Self, (Verdict, Why)> {
+        Self::at(c, &c.transfer(&[from]), from, to)
+    }
+
+    /// The same, when the speeds over that of `from` are known.
+    fn at(c: &Configuration<'_>, transfer: &Transfer, from: MemberId, to: MemberId) -> Result<Self, (Verdict, Why)> {
         let name = |m: MemberId| c.train.member_name(m).to_owned();
-        let transfer = c.transfer(&[from]);
         let motion = Motion {
             speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(),
             pi_power: 0,
@@ -200,11 +208,12 @@ impl Drive {
     }
 }
 
-/// What can be said of power from `from` to a resisting load at `to`. The train's input turns forward.
-fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberId) -> Direction {
+/// What can be said of power from `from` to a resisting load at `to`, the speeds over that of `from` being known. The
+/// train's input turns forward.
+fn direction(c: &Configuration<'_>, transfer: &Transfer, [from, to]: [MemberId; 2], input: MemberId) -> Direction {
     let train = c.train;
     let name = |m: MemberId| train.member_name(m).to_owned();
-    let Drive { speeds: [w_from, w_to], balance, .. } = match Drive::new(c, from, to) {
+    let Drive { speeds: [w_from, w_to], balance, .. } = match Drive::at(c, transfer, from, to) {
         Ok(drive) => drive,
         Err((verdict, why)) => return Direction::without(verdict, why),
     };
@@ -305,9 +314,8 @@ fn locked(c: &Configuration<'_>, input: MemberId) -> Why {
     }
 }
 
-fn free(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Why {
+fn free(c: &Configuration<'_>, transfer: &Transfer, input: MemberId, output: MemberId) -> Why {
     let train = c.train;
-    let transfer = c.transfer(&[input]);
     let loose = (1..train.members.len()).map(MemberId).filter(|m| transfer.speeds[m.0].is_none() && !c.inner[m.0]);
     Why::SpeedNotSettled {
         freedoms: c.degrees_of_freedom(),
@@ -318,11 +326,10 @@ fn free(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Why {
 }
 
 /// One-way clutches that are not engaged must not turn the way they block.
-fn one_way_speeds(c: &Configuration<'_>, input: MemberId, place: &str, name: &str, diagnostics: &mut Diagnostics) {
+fn one_way_speeds(c: &Configuration<'_>, transfer: &Transfer, place: &str, name: &str, diagnostics: &mut Diagnostics) {
     let train = c.train;
     let open = (0..train.shift_elements.len()).map(ShiftElementId).filter(|e| !c.engaged.contains(e));
     let elements = open.filter(|e| train.shift_elements[e.0].kind == ShiftElementKind::OneWay);
-    let transfer = c.transfer(&[input]);
     for id in elements {
         let element = &train.shift_elements[id.0];
         let [a, b] = element.members.map(|m| transfer.speeds[m.0].as_ref().map(|w| w[0].clone()));

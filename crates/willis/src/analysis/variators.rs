@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::power_flow::{BeyondLimit, Flow, SideFlow, VariatorFlow, machine_beyond, ratio_beyond};
 use crate::train::{Train, Variator, VariatorKind, VariatorPath};
 
@@ -29,7 +29,7 @@ pub struct VariatorReport {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ratio: Option<f64>,
     /// Its sides by their members, or its machines.
-    pub machines: Named<MachineReport>,
+    pub machines: NameMap<MachineReport>,
 }
 
 /// A side of a variator, or a machine.
@@ -51,12 +51,12 @@ pub struct MachineReport {
 }
 
 /// What the variators do in a flow.
-pub(super) fn reports(train: &Train, flow: &Flow) -> Named<VariatorReport> {
+pub(super) fn reports(train: &Train, flow: &Flow) -> NameMap<VariatorReport> {
     let named = |f: &VariatorFlow| {
         let v = &train.variators[f.variator];
         (v.name.clone(), report(train, v, f, flow.input_power))
     };
-    Named(flow.variators.iter().map(named).collect())
+    NameMap(flow.variators.iter().map(named).collect())
 }
 
 fn report(train: &Train, v: &Variator, f: &VariatorFlow, input: f64) -> VariatorReport {
@@ -95,7 +95,7 @@ fn report(train: &Train, v: &Variator, f: &VariatorFlow, input: f64) -> Variator
         loss_w: f.loss + standby + 0.0,
         store_w: has_bus.then_some(f.store + 0.0),
         ratio,
-        machines: Named(names.into_iter().zip(f.sides.iter().enumerate().map(side)).collect()),
+        machines: NameMap(names.into_iter().zip(f.sides.iter().enumerate().map(side)).collect()),
     }
 }
 

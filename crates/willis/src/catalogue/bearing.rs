@@ -236,7 +236,7 @@ impl Bearing {
 /// The numbers of a bearing that its friction laws read, copied out of a [`Bearing`] so that the
 /// state of a law stays plain data. SI, as there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Data<R = f64> {
+pub struct BearingData<R = f64> {
     /// Its type.
     pub kind: Kind,
     /// Bore, m.
@@ -261,17 +261,17 @@ pub struct Data<R = f64> {
     pub palmgren: PalmgrenConstants,
 }
 
-impl<R: Real> Data<R> {
+impl<R: Real> BearingData<R> {
     /// Mean diameter `d_m = (d + D)/2`, m.
     pub fn mean_diameter(&self) -> R {
         (self.bore + self.outside_diameter) * 0.5
     }
 }
 
-impl Data {
+impl BearingData {
     /// The same with another kind of numbers.
-    pub fn lift<D: Real>(self) -> Data<D> {
-        Data {
+    pub fn lift<D: Real>(self) -> BearingData<D> {
+        BearingData {
             kind: self.kind,
             bore: D::from(self.bore),
             outside_diameter: D::from(self.outside_diameter),
@@ -433,9 +433,9 @@ impl Bearing {
 
     /// The numbers that the friction laws read. Where the diameter of the rolling elements is not
     /// known, 0.3 (balls) or 0.25 (rollers) of D − d is taken.
-    pub fn data(&self) -> Data {
+    pub fn data(&self) -> BearingData {
         let share = if self.kind.is_ball() { 0.3 } else { 0.25 };
-        Data {
+        BearingData {
             kind: self.kind,
             bore: self.bore,
             outside_diameter: self.outside_diameter,

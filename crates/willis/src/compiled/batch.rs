@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use super::duty::Points;
+use super::duty::BatchInputs;
 use super::grid::{GridInputs, Layout, OutputSummary, PointValue};
 use super::kernel::{self, Chunk, SUMS};
 use super::parts::{CHUNK, MOST_FEATURES, Target};
 use super::single::{Single, SingleOut};
 use super::{Column, CompiledTrain};
 
-/// Points that are added up before their sum is added to that of all points.
+/// BatchInputs that are added up before their sum is added to that of all points.
 const SUM_BLOCK: usize = 4 * CHUNK;
 
 /// Room for the work on a batch; make it once and use it again.
@@ -27,7 +27,7 @@ pub struct Workspace {
 /// Where the inputs of a batch come from.
 #[derive(Clone, Copy)]
 enum Source<'s, 'a> {
-    Arrays(&'s Points<'a>),
+    Arrays(&'s BatchInputs<'a>),
     Grid(&'s Layout<'a>),
 }
 
@@ -85,7 +85,7 @@ impl CompiledTrain {
     ///
     /// # Panics
     /// If a slice has another length than the inputs.
-    pub fn evaluate_batch(&self, points: &Points<'_>, work: &mut Workspace, out: &mut [&mut [f64]]) -> usize {
+    pub fn evaluate_batch(&self, points: &BatchInputs<'_>, work: &mut Workspace, out: &mut [&mut [f64]]) -> usize {
         let n = points.len(self.speeds, self.torques);
         self.store(Source::Arrays(points), 0..n, work, out)
     }
@@ -97,7 +97,7 @@ impl CompiledTrain {
     /// See [`GridInputs`].
     ///
     /// # Panics
-    /// If the grid has other inputs than the duty, a point is beyond its end, or a slice is not as long as the points are
+    /// If the grid has other inputs than the request, a point is beyond its end, or a slice is not as long as the points are
     /// many.
     pub fn evaluate_grid(
         &self,
@@ -118,7 +118,7 @@ impl CompiledTrain {
     ///
     /// # Panics
     /// If `out` is not as long as the outputs are many.
-    pub fn summarize_batch(&self, points: &Points<'_>, work: &mut Workspace, out: &mut [OutputSummary]) -> usize {
+    pub fn summarize_batch(&self, points: &BatchInputs<'_>, work: &mut Workspace, out: &mut [OutputSummary]) -> usize {
         let n = points.len(self.speeds, self.torques);
         self.summarize(Source::Arrays(points), 0..n, work, out)
     }
@@ -126,7 +126,7 @@ impl CompiledTrain {
     /// The same over some points of a grid, by their numbers.
     ///
     /// # Panics
-    /// If the grid has other inputs than the duty, a point is beyond its end, or `out` is not as long as the outputs are
+    /// If the grid has other inputs than the request, a point is beyond its end, or `out` is not as long as the outputs are
     /// many.
     pub fn summarize_grid(
         &self,
@@ -146,7 +146,7 @@ impl CompiledTrain {
         work: &mut Workspace,
         out: &mut [&mut [f64]],
     ) -> usize {
-        assert_eq!(out.len(), self.outputs.len(), "one slice for each output of the duty");
+        assert_eq!(out.len(), self.outputs.len(), "one slice for each output of the request");
         let n = points.len();
         assert!(out.iter().all(|o| o.len() == n), "outputs as long as the inputs");
         if let Some(single) = &self.single {
@@ -263,7 +263,7 @@ impl CompiledTrain {
         work: &mut Workspace,
         out: &mut [OutputSummary],
     ) -> usize {
-        assert_eq!(out.len(), self.outputs.len(), "one summary for each output of the duty");
+        assert_eq!(out.len(), self.outputs.len(), "one summary for each output of the request");
         out.fill(OutputSummary::default());
         let mut odd = 0;
         for start in points.clone().step_by(SUM_BLOCK) {
@@ -325,9 +325,9 @@ impl CompiledTrain {
     ///
     /// # Panics
     /// If `sums` is not as long as the outputs.
-    pub fn sum_batch(&self, points: &Points<'_>, work: &mut Workspace, sums: &mut [f64]) -> usize {
+    pub fn sum_batch(&self, points: &BatchInputs<'_>, work: &mut Workspace, sums: &mut [f64]) -> usize {
         let n = points.len(self.speeds, self.torques);
-        assert_eq!(sums.len(), self.outputs.len(), "one sum for each output of the duty");
+        assert_eq!(sums.len(), self.outputs.len(), "one sum for each output of the request");
         sums.fill(0.0);
         let mut odd = 0;
         for start in (0..n).step_by(CHUNK) {

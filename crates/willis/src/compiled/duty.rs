@@ -37,7 +37,7 @@ pub struct ShaftDrag {
 ///
 /// # Example
 /// ```
-/// use willis::compiled::{Duty, Output, PowerLoss};
+/// use willis::compiled::{CompileRequest, CompiledOutput, PowerLoss};
 /// use willis::train::{SetSpec, Train};
 ///
 /// let train = Train::builder("reducer")
@@ -46,8 +46,9 @@ pub struct ShaftDrag {
 ///     .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier"))
 ///     .build()?;
 /// let law = PowerLoss { coefficient: 0.02, exponent: 0.2, ..PowerLoss::default() };
-/// let duty = Duty::new(["sun"], ["sun"]).fixed("ring").mesh_loss("P1", law).output(Output::Torque("carrier".into()));
-/// let compiled = train.compile(&duty)?;
+/// let torque = CompiledOutput::Torque("carrier".into());
+/// let request = CompileRequest::new(["sun"], ["sun"]).fixed("ring").mesh_loss("P1", law).output(torque);
+/// let compiled = train.compile(&request)?;
 /// let mut out = [0.0];
 /// compiled.evaluate(&[100.0], &[50.0], &mut compiled.workspace(), &mut out);
 /// // The carrier takes 3/10 of the sun's speed; relative to it the sun turns at 70 rad/s.
@@ -90,7 +91,7 @@ impl PowerLoss {
 /// A result to compute for every point.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Output {
+pub enum CompiledOutput {
     /// Speed of a member, rad/s.
     Speed(String),
     /// External torque on a terminal, N m.
@@ -110,7 +111,7 @@ pub enum Output {
 /// # Example
 /// See [`Train::compile`](crate::train::Train::compile).
 #[derive(Clone, Debug, Default)]
-pub struct Duty {
+pub struct CompileRequest {
     pub(super) state: Option<String>,
     pub(super) fixed: Vec<String>,
     pub(super) speeds: Vec<String>,
@@ -118,10 +119,10 @@ pub struct Duty {
     pub(super) drag: Vec<(String, ShaftDrag)>,
     pub(super) between: Vec<[MemberId; 2]>,
     pub(super) losses: Vec<(String, PowerLoss)>,
-    pub(super) outputs: Vec<Output>,
+    pub(super) outputs: Vec<CompiledOutput>,
 }
 
-impl Duty {
+impl CompileRequest {
     /// Prescribed: the speeds of some members and the external torques on some terminals, in the
     /// order in which a point gives them.
     pub fn new<'a>(speeds: impl IntoIterator<Item = &'a str>, torques: impl IntoIterator<Item = &'a str>) -> Self {
@@ -163,7 +164,7 @@ impl Duty {
 
     /// Asks for a result; results come in the order asked for.
     #[must_use]
-    pub fn output(mut self, output: Output) -> Self {
+    pub fn output(mut self, output: CompiledOutput) -> Self {
         self.outputs.push(output);
         self
     }
@@ -171,16 +172,16 @@ impl Duty {
 
 /// Inputs of a batch: one slice for each prescribed speed and torque, all of one length.
 #[derive(Clone, Copy, Debug)]
-pub struct Points<'a> {
+pub struct BatchInputs<'a> {
     /// Prescribed speeds, rad/s.
     pub speeds: &'a [&'a [f64]],
     /// Prescribed torques, N m.
     pub torques: &'a [&'a [f64]],
 }
 
-impl Points<'_> {
+impl BatchInputs<'_> {
     pub(super) fn len(&self, speeds: usize, torques: usize) -> usize {
-        assert_eq!((self.speeds.len(), self.torques.len()), (speeds, torques), "inputs as the duty names them");
+        assert_eq!((self.speeds.len(), self.torques.len()), (speeds, torques), "inputs as the request names them");
         let n = self.speeds.first().or(self.torques.first()).map_or(0, |s| s.len());
         assert!(self.speeds.iter().chain(self.torques).all(|s| s.len() == n), "inputs of one length");
         n

@@ -1,4 +1,4 @@
-//! Points that form a grid: their inputs are made where they are used, and never stored.
+//! BatchInputs that form a grid: their inputs are made where they are used, and never stored.
 
 use std::ops::Range;
 
@@ -6,14 +6,14 @@ use super::parts::MOST_FEATURES;
 
 /// Inputs of a batch whose points form a grid: every combination of the values of each input.
 ///
-/// Points are numbered from 0 in row-major order: the last input runs fastest, where inputs are the speeds and then the
+/// BatchInputs are numbered from 0 in row-major order: the last input runs fastest, where inputs are the speeds and then the
 /// torques. [`GridInputs::nested`] chooses another order. The results are those of
 /// [`evaluate_batch`](super::CompiledTrain::evaluate_batch) on the arrays that a grid stands for, to the last bit; a row
 /// of a power split along which only the torque varies takes about a third of the time.
 ///
 /// # Example
 /// ```
-/// use willis::compiled::{Duty, GridInputs, Output};
+/// use willis::compiled::{CompileRequest, CompiledOutput, GridInputs};
 /// use willis::train::{SetSpec, Train};
 ///
 /// let train = Train::builder("power split")
@@ -21,8 +21,8 @@ use super::parts::MOST_FEATURES;
 ///     .terminals(["sun", "ring", "carrier"])
 ///     .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier").mesh_efficiency(0.99))
 ///     .build()?;
-/// let duty = Duty::new(["sun", "carrier"], ["sun"]).output(Output::Torque("ring".into()));
-/// let compiled = train.compile(&duty)?;
+/// let request = CompileRequest::new(["sun", "carrier"], ["sun"]).output(CompiledOutput::Torque("ring".into()));
+/// let compiled = train.compile(&request)?;
 /// let mut work = compiled.workspace();
 /// // Two speeds of the sun, one of the carrier, three torques: six points.
 /// let grid = GridInputs::new(&[&[300.0, 400.0], &[100.0]], &[&[10.0, 20.0, 30.0]]);
@@ -76,7 +76,7 @@ impl<'a> GridInputs<'a> {
     }
 
     pub(crate) fn layout(&self, speeds: usize, torques: usize) -> Layout<'a> {
-        assert_eq!((self.speeds.len(), self.torques.len()), (speeds, torques), "inputs as the duty names them");
+        assert_eq!((self.speeds.len(), self.torques.len()), (speeds, torques), "inputs as the request names them");
         let inputs = speeds + torques;
         let (values, stride) = ([&[][..]; MOST_FEATURES], [1; MOST_FEATURES]);
         let mut layout = Layout { values, stride, inputs, torque_runs: false };

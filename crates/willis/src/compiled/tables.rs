@@ -4,12 +4,12 @@
 use crate::diagnostic::Diagnostics;
 use crate::train::{MemberId, ShiftElementId, Train};
 
-use super::{Column, Compiler, Duty, Output};
+use super::{Column, CompileRequest, CompiledOutput, Compiler};
 
-/// The equilibrium of a train for a [`Duty`], as plain tables.
+/// The equilibrium of a train for a [`CompileRequest`], as plain tables.
 ///
-/// A point prescribes the speeds `n` of the duty, its torques, and the torques between two members that were named: the
-/// inputs `x`, torques first. Every element carries one force `f_j`, and `ρ_j` is `rho[0]` where its end p drives and
+/// A point prescribes the speeds `n` of the request, its torques, and the torques between two members that were named:
+/// the inputs `x`, torques first. Every element carries one force `f_j`, and `ρ_j` is `rho[0]` where its end p drives and
 /// `rho[1]` where its other end does:
 ///
 /// ```text
@@ -84,7 +84,7 @@ pub enum TableOutput {
 }
 
 impl Train {
-    /// The tables of a duty without drag and without losses that depend on load. `between` names pairs of members
+    /// The tables of a request without drag and without losses that depend on load. `between` names pairs of members
     /// between which further torques act: on the first, and against the second.
     ///
     /// # Errors
@@ -92,7 +92,7 @@ impl Train {
     ///
     /// # Example
     /// ```
-    /// use willis::compiled::{Duty, TableOutput};
+    /// use willis::compiled::{CompileRequest, TableOutput};
     /// use willis::train::{SetSpec, Train};
     ///
     /// let train = Train::builder("reducer")
@@ -100,7 +100,7 @@ impl Train {
     ///     .terminals(["sun", "carrier"])
     ///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").mesh_efficiency(0.99))
     ///     .build()?;
-    /// let tables = train.tables(&Duty::new(["sun"], ["sun"]), &[])?;
+    /// let tables = train.tables(&CompileRequest::new(["sun"], ["sun"]), &[])?;
     /// let [e] = &tables.elements[..] else { panic!() };
     /// // A force of one in the only row: f = T/constant.
     /// let f = tables.right[0][0] * 10.0 / (e.entries[0].1 + e.rho[0] * e.entries[0].2);
@@ -109,15 +109,16 @@ impl Train {
     /// assert!((carrier + 10.0 * (1.0 + 0.9801 * 7.0 / 3.0)).abs() < 1e-12);
     /// # Ok::<(), willis::diagnostic::Diagnostics>(())
     /// ```
-    pub fn tables(&self, duty: &Duty, between: &[[MemberId; 2]]) -> Result<Tables, Diagnostics> {
-        let mut own = Duty { drag: vec![], losses: vec![], outputs: vec![], between: between.to_vec(), ..duty.clone() };
+    pub fn tables(&self, duty: &CompileRequest, between: &[[MemberId; 2]]) -> Result<Tables, Diagnostics> {
+        let mut own =
+            CompileRequest { drag: vec![], losses: vec![], outputs: vec![], between: between.to_vec(), ..duty.clone() };
         let first = Compiler::new(self, &own)?;
         let name = |m: &MemberId| self.member_name(*m).to_owned();
-        own.outputs = self.terminals().iter().map(|m| Output::Torque(name(m))).collect();
+        own.outputs = self.terminals().iter().map(|m| CompiledOutput::Torque(name(m))).collect();
         let closed: Vec<bool> =
             (0..self.shift_elements.len()).map(|k| first.c.engaged.contains(&ShiftElementId(k))).collect();
         let engaged = self.shift_elements.iter().zip(&closed).filter(|(_, closed)| **closed);
-        own.outputs.extend(engaged.map(|(e, _)| Output::ShiftElementTorque(e.name.clone())));
+        own.outputs.extend(engaged.map(|(e, _)| CompiledOutput::ShiftElementTorque(e.name.clone())));
         let transfer = first.c.transfer(&first.speeds);
         let speeds = transfer.speeds.iter();
         let speeds = speeds.map(|row| Some(row.as_ref()?.iter().map(|x| x.to_f64()).collect())).collect();

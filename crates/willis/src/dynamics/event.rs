@@ -1,6 +1,6 @@
 //! Changes of mode: what happened to which elements, and in words.
 
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::train::{ShiftElementKind, Train};
 
 use super::element::element_name;
@@ -28,7 +28,7 @@ pub(super) fn event(
 ) -> Option<Event> {
     let changed = |(k, l): &(usize, &ModeLabel)| before.get(*k) != Some(l);
     let named = |(k, l): (usize, &ModeLabel)| (engine.names[k].clone(), *l);
-    let modes: Named<ModeLabel> = now.iter().enumerate().filter(changed).map(named).collect();
+    let modes: NameMap<ModeLabel> = now.iter().enumerate().filter(changed).map(named).collect();
     let happenings = if why == Some(Why::Start) {
         vec![Happening { kind: HappeningKind::Start, of: vec![] }]
     } else if !modes.is_empty() {

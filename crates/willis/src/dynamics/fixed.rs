@@ -33,7 +33,7 @@ use crate::train::Train;
 use super::element::{Loss, element_name};
 use super::engine::{Engine, Touch};
 use super::fused::{Exactly, Fused};
-use super::handles::{Input, InputInfo, InputRefused, Output};
+use super::handles::{InputHandle, InputInfo, InputRefused, OutputHandle};
 use super::mode::{ByKey, Mode, Side, dot};
 use super::report::{Column, Outcome};
 use super::shows::Shows;
@@ -418,7 +418,7 @@ impl FixedStep {
     ///
     /// # Errors
     /// If there is none, with the nearest name; if it is a load that follows the speed.
-    pub fn input(&self, name: &str) -> Result<Input, Diagnostics> {
+    pub fn input(&self, name: &str) -> Result<InputHandle, Diagnostics> {
         self.engine.system.input(name)
     }
 
@@ -426,7 +426,7 @@ impl FixedStep {
     ///
     /// # Errors
     /// If the value is not finite.
-    pub fn set(&mut self, input: Input, value: f64) -> Result<(), InputRefused> {
+    pub fn set(&mut self, input: InputHandle, value: f64) -> Result<(), InputRefused> {
         self.engine.system.set(input, value)?;
         let s = &self.engine.system;
         let prescribed = s.prescribed_by(input);
@@ -445,8 +445,8 @@ impl FixedStep {
     ///
     /// # Errors
     /// If there is none, with the nearest name.
-    pub fn output(&mut self, name: &str) -> Result<Output, Diagnostics> {
-        let output = Output::of(&self.engine.columns(), name)?;
+    pub fn output(&mut self, name: &str) -> Result<OutputHandle, Diagnostics> {
+        let output = OutputHandle::of(&self.engine.columns(), name)?;
         self.shows_forces |= !output.shows(&self.engine.shows).is_motion();
         Ok(output)
     }
@@ -456,7 +456,7 @@ impl FixedStep {
     /// act in them at the present speeds.
     ///
     /// Speeds and angles cost a sum. The first of the others after a step solves for the forces once.
-    pub fn read(&mut self, output: Output) -> f64 {
+    pub fn read(&mut self, output: OutputHandle) -> f64 {
         let shows = output.shows(&self.engine.shows);
         let s = &self.engine.system;
         match shows {

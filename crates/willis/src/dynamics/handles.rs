@@ -14,7 +14,7 @@ use super::system::System;
 
 /// An input of a run. It belongs to runs of one scenario of one train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Input(Sets);
+pub struct InputHandle(Sets);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Sets {
@@ -24,7 +24,7 @@ enum Sets {
 
 /// An output of a run. It belongs to runs of one scenario of one train.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Output(usize);
+pub struct OutputHandle(usize);
 
 /// What an input of a run is called and means.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,7 +37,7 @@ pub struct InputInfo {
     /// In what its value is.
     pub unit: ColumnUnit,
     /// The handle.
-    pub input: Input,
+    pub input: InputHandle,
 }
 
 /// What the value of an input means.
@@ -122,7 +122,7 @@ impl System {
     /// All inputs of the scenario.
     pub fn inputs(&self) -> Vec<InputInfo> {
         let info =
-            |name: String, kind: InputKind, sets| InputInfo { name, kind, unit: kind.unit(), input: Input(sets) };
+            |name: String, kind: InputKind, sets| InputInfo { name, kind, unit: kind.unit(), input: InputHandle(sets) };
         let sources = (self.scenario.sources.iter().enumerate()).filter_map(|(k, source)| {
             let (kind, _) = signal(&mut source.kind.clone())?;
             Some(info(source.name.clone(), kind, Sets::Source(k)))
@@ -135,7 +135,7 @@ impl System {
     }
 
     /// The input of that name.
-    pub fn input(&self, name: &str) -> Result<Input, Diagnostics> {
+    pub fn input(&self, name: &str) -> Result<InputHandle, Diagnostics> {
         let all = self.inputs();
         if let Some(known) = all.iter().find(|i| i.name == name) {
             return Ok(known.input);
@@ -149,7 +149,7 @@ impl System {
     }
 
     /// What an input is worth from now on.
-    pub fn set(&mut self, input: Input, value: f64) -> Result<(), InputRefused> {
+    pub fn set(&mut self, input: InputHandle, value: f64) -> Result<(), InputRefused> {
         if !value.is_finite() {
             return Err(InputRefused::NotFinite);
         }
@@ -158,7 +158,7 @@ impl System {
     }
 
     /// The signal that an input replaces.
-    pub fn signal_of(&mut self, input: Input) -> &mut Signal {
+    pub fn signal_of(&mut self, input: InputHandle) -> &mut Signal {
         let signal = match input.0 {
             Sets::Source(k) => signal(&mut self.scenario.sources[k].kind).map(|(_, signal)| signal),
             Sets::Engagement(k) => Some(&mut self.scenario.engagements[k].signal),
@@ -167,7 +167,7 @@ impl System {
     }
 
     /// The speed that an input prescribes, as a position among the prescribed ones.
-    pub fn prescribed_by(&self, input: Input) -> Option<usize> {
+    pub fn prescribed_by(&self, input: InputHandle) -> Option<usize> {
         match input.0 {
             Sets::Source(k) => self.drivers[k].prescribed,
             Sets::Engagement(_) => None,
@@ -175,7 +175,7 @@ impl System {
     }
 }
 
-impl Output {
+impl OutputHandle {
     /// The output of that name among columns.
     pub(super) fn of(columns: &[Column], name: &str) -> Result<Self, Diagnostics> {
         let known = || columns.iter().map(Column::quantity);

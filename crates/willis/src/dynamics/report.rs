@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::power_flow::{BeyondLimit, LimitedQuantity};
 use crate::train::Scenario;
 use crate::units::without_unit;
@@ -338,7 +338,7 @@ pub struct Event {
     #[serde(default)]
     pub happenings: Vec<Happening>,
     /// The modes after it that differ from those before, by element.
-    pub modes: Named<ModeLabel>,
+    pub modes: NameMap<ModeLabel>,
 }
 
 impl Event {
@@ -648,7 +648,7 @@ pub struct RunReport {
     /// Changes of mode, where they were kept.
     pub events: Vec<Event>,
     /// Speeds of all members at the end, rad/s; without those that are no longer finite.
-    pub final_speeds_rad_s: Named<f64>,
+    pub final_speeds_rad_s: NameMap<f64>,
     /// Where the energy went; nothing where it was not counted, or is no longer finite.
     pub energy: Option<EnergyReport>,
     /// Temperatures, where the train says what carries its heat away and steps are adapted.
@@ -679,9 +679,9 @@ pub struct RunReport {
 #[non_exhaustive]
 pub struct MotionHeat {
     /// Temperature of each place at the start, K.
-    pub start_k: Named<f64>,
+    pub start_k: NameMap<f64>,
     /// Temperature of each place at the end, K.
-    pub end_k: Named<f64>,
+    pub end_k: NameMap<f64>,
     /// Highest oil temperature, K.
     pub highest_oil_k: f64,
     /// Highest oil temperature that the train allows, K.

@@ -15,7 +15,7 @@ use crate::train::{MemberId, Train};
 use super::choose::Trouble;
 use super::engine::Engine;
 use super::event::{Why, event, short};
-use super::handles::{Input, InputInfo, InputRefused, Output};
+use super::handles::{InputHandle, InputInfo, InputRefused, OutputHandle};
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
 use super::margins::{Margin, NOISE};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
@@ -276,7 +276,7 @@ impl Simulation {
     ///
     /// # Errors
     /// If there is none, with the nearest name; if it is a load that follows the speed.
-    pub fn input(&self, name: &str) -> Result<Input, Diagnostics> {
+    pub fn input(&self, name: &str) -> Result<InputHandle, Diagnostics> {
         self.engine.system.input(name)
     }
 
@@ -284,7 +284,7 @@ impl Simulation {
     ///
     /// # Errors
     /// If the value is not finite, or if a prescribed speed would jump.
-    pub fn set(&mut self, input: Input, value: f64) -> Result<(), InputRefused> {
+    pub fn set(&mut self, input: InputHandle, value: f64) -> Result<(), InputRefused> {
         let s = &self.engine.system;
         if let Some(i) = s.prescribed_by(input) {
             let now = self.engine.speed[s.free + i];
@@ -302,12 +302,12 @@ impl Simulation {
     ///
     /// # Errors
     /// If there is none, with the nearest name.
-    pub fn output(&self, name: &str) -> Result<Output, Diagnostics> {
-        Output::of(&self.columns, name)
+    pub fn output(&self, name: &str) -> Result<OutputHandle, Diagnostics> {
+        OutputHandle::of(&self.columns, name)
     }
 
     /// The value of an output at the time reached, in the unit of its column; NaN where it is not determined.
-    pub fn read(&mut self, output: Output) -> f64 {
+    pub fn read(&mut self, output: OutputHandle) -> f64 {
         if !self.row_is_present {
             self.row();
             self.row_is_present = true;

@@ -9,9 +9,9 @@ use super::{Basis, PairData, inverse_involute, involute};
 /// Sun 17, planet 24, ring 67 of diametral pitch 8/in: without shifts they would need 25 teeth on
 /// the planet. With 24 at 2.65 in the two meshes run at different angles.
 /// ```
-/// use willis::geometry::Chain;
+/// use willis::geometry::SimpleSetGeometry;
 ///
-/// let chain = Chain {
+/// let chain = SimpleSetGeometry {
 ///     module: 25.4e-3 / 8.0,
 ///     pressure_angle: 20f64.to_radians(),
 ///     helix: 0.0,
@@ -22,7 +22,7 @@ use super::{Basis, PairData, inverse_involute, involute};
 /// assert_eq!(format!("{:.4} {:.4}", outer.to_degrees(), inner.to_degrees()), "24.6785 17.6380");
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chain {
+pub struct SimpleSetGeometry {
     /// Normal module, m.
     pub module: f64,
     /// Normal pressure angle, rad.
@@ -35,7 +35,7 @@ pub struct Chain {
     pub shifts: [f64; 3],
 }
 
-impl Chain {
+impl SimpleSetGeometry {
     /// Operating centre distances of sun–planet and planet–ring, m, each without backlash at its
     /// own shifts. Sun and ring are coaxial where both are equal. `None` where a mesh has no
     /// operating angle.
@@ -48,8 +48,8 @@ impl Chain {
     ///
     /// # Example
     /// ```
-    /// # use willis::geometry::Chain;
-    /// let chain = Chain {
+    /// # use willis::geometry::SimpleSetGeometry;
+    /// let chain = SimpleSetGeometry {
     ///     module: 4e-3,
     ///     pressure_angle: 20f64.to_radians(),
     ///     helix: 0.0,
@@ -75,7 +75,7 @@ impl Chain {
     /// room for one of them.
     ///
     /// # Source
-    /// `[iso21771]`, working transverse pressure angle. Example: [`Chain`].
+    /// `[iso21771]`, working transverse pressure angle. Example: [`SimpleSetGeometry`].
     pub fn coaxial_operating_angles(&self, centre_distance: f64) -> Option<[f64; 2]> {
         let basis = self.basis();
         let cosines = self.sums().map(|(teeth, _)| basis.base_distance(teeth) / centre_distance);
@@ -88,8 +88,8 @@ impl Chain {
     ///
     /// # Example
     /// ```
-    /// # use willis::geometry::Chain;
-    /// let mut chain = Chain {
+    /// # use willis::geometry::SimpleSetGeometry;
+    /// let mut chain = SimpleSetGeometry {
     ///     module: 4e-3,
     ///     pressure_angle: 20f64.to_radians(),
     ///     helix: 0.0,

@@ -68,7 +68,7 @@ pub struct Segment<'a, S: ?Sized> {
 
 /// A duty cycle that repeats itself.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Duty {
+pub struct PeriodicDuty {
     /// One period.
     pub runs: Vec<Run>,
     /// Highest, lowest and mean oil temperature, K.
@@ -130,7 +130,7 @@ pub fn duty<S: Source + ?Sized>(
     heat: &Heat,
     segments: &[Segment<'_, S>],
     tolerance: f64,
-) -> Result<Duty, Failed<S::Error>> {
+) -> Result<PeriodicDuty, Failed<S::Error>> {
     let cold = heat.cold()?;
     let mut start: Vec<f64> = heat.nodes.iter().map(|n| n.fixed.unwrap_or(cold)).collect();
     let pass = |start: &[f64]| -> Result<Vec<Run>, Failed<S::Error>> {
@@ -175,7 +175,7 @@ pub fn duty<S: Source + ?Sized>(
     }
     let period: f64 = segments.iter().map(|s| s.duration).sum();
     let mean = runs.iter().zip(segments).map(|(r, s)| r.mean_oil * s.duration).sum::<f64>() / period;
-    Ok(Duty {
+    Ok(PeriodicDuty {
         highest: runs.iter().map(|r| r.oil_range[1]).fold(f64::NEG_INFINITY, f64::max),
         lowest: runs.iter().map(|r| r.oil_range[0]).fold(f64::INFINITY, f64::min),
         mean,

@@ -1,9 +1,9 @@
 //! Frictional torque of a rolling bearing.
 //!
-//! A law reads the numbers of a bearing from [`Data`], looked up beforehand
+//! A law reads the numbers of a bearing from [`BearingData`], looked up beforehand
 //! ([`Bearing::data`](crate::catalogue::bearing::Bearing::data)).
 
-use crate::catalogue::bearing::Data;
+use crate::catalogue::bearing::BearingData;
 use crate::catalogue::oil::Base;
 use crate::real::{Inner, Real};
 
@@ -29,7 +29,7 @@ pub enum Supply<R = f64> {
 #[derive(Clone, Copy, Debug)]
 pub struct BearingDuty<D: Real, C = Inner<D>> {
     /// The numbers of the bearing.
-    pub bearing: Data<C>,
+    pub bearing: BearingData<C>,
     /// Speed of one ring relative to the other, ≥ 0, rad/s.
     pub speed: D,
     /// Radial load, N.

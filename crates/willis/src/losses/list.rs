@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
 
-use super::{Entry, Trust, entries};
+use super::{LawSummary, Trust, entries};
 
 /// Every law there is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -148,8 +148,8 @@ impl schemars::JsonSchema for Checked {
     }
 }
 
-impl From<Entry> for LawReport {
-    fn from(e: Entry) -> Self {
+impl From<LawSummary> for LawReport {
+    fn from(e: LawSummary) -> Self {
         let finite = |x: f64| x.is_finite().then_some(x);
         let bounds = |(symbol, unit, min, max): (&str, &str, f64, f64)| Bounds {
             symbol: symbol.to_owned(),
@@ -181,6 +181,6 @@ impl From<Entry> for LawReport {
 /// assert!(all.laws[0].default && all.laws.iter().all(|l| l.family == "bearing"));
 /// ```
 pub fn list(family: Option<&str>) -> LawList {
-    let wanted = |e: &Entry| family.is_none_or(|f| e.family == f);
+    let wanted = |e: &LawSummary| family.is_none_or(|f| e.family == f);
     LawList { format: Format::new(), laws: entries().into_iter().filter(wanted).map(LawReport::from).collect() }
 }

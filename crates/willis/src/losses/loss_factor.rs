@@ -8,7 +8,7 @@ use crate::losses::load_sharing::Relief;
 
 /// Path of contact of a pair.
 #[derive(Clone, Copy, Debug)]
-pub struct Path<D> {
+pub struct PathOfContact<D> {
     /// Tooth counts, in the order of `e`.
     pub teeth: [f64; 2],
     /// Whether one wheel, that with more teeth, is a ring gear.
@@ -28,7 +28,7 @@ pub struct Path<D> {
 
 family! {
     /// Loss factor of a mesh.
-    LossFactor ("loss_factor"): Path => "H_V" ["-"];
+    LossFactor ("loss_factor"): PathOfContact => "H_V" ["-"];
     integrated::Integrated,
     two_pair::TwoPair,
     ohlendorf::Ohlendorf,
@@ -37,15 +37,15 @@ family! {
     iso_14179_1::Iso14179Part1,
 }
 
-impl<D: crate::Real> Path<D> {
+impl<D: crate::Real> PathOfContact<D> {
     /// `K = π (1/z_1 ± 1/z_2)/cos β_b`, −, with − for a ring.
     ///
     /// # Example
     /// 17/22 spur: by hand π (1/17 + 1/22) = 0.32760.
     /// ```
-    /// use willis::losses::loss_factor::Path;
+    /// use willis::losses::loss_factor::PathOfContact;
     ///
-    /// assert_eq!(format!("{:.5}", Path::typical().factor()), "0.32760");
+    /// assert_eq!(format!("{:.5}", PathOfContact::typical().factor()), "0.32760");
     /// ```
     pub fn factor(&self) -> D {
         let [first, second] = self.teeth.map(|z| 1.0 / z);
@@ -59,13 +59,13 @@ impl<D: crate::Real> Path<D> {
     }
 }
 
-impl<D: crate::Real> Path<D> {
+impl<D: crate::Real> PathOfContact<D> {
     /// The path of a pair of gears without tip relief.
     ///
     /// # Example
     /// ```
     /// use willis::geometry::{Pair, PairData, Tip, Wheel};
-    /// use willis::losses::loss_factor::{LossFactor, Path};
+    /// use willis::losses::loss_factor::{LossFactor, PathOfContact};
     ///
     /// let tip = Tip::Addendum { coefficient: 1.0, alteration: 0.0 };
     /// let wheel = |teeth| Wheel { teeth, internal: false, shift: 0.0, tip, dedendum: 1.25 };
@@ -79,7 +79,7 @@ impl<D: crate::Real> Path<D> {
     ///     wheels: [wheel(17.0), wheel(22.0)],
     /// })
     /// .unwrap();
-    /// let h = LossFactor::default().eval(&Path::of(&pair));
+    /// let h = LossFactor::default().eval(&PathOfContact::of(&pair));
     /// assert_eq!(format!("{h:.6}"), "0.213122");
     /// ```
     pub fn of(pair: &Pair<D>) -> Self {
@@ -95,7 +95,7 @@ impl<D: crate::Real> Path<D> {
     }
 }
 
-impl Path<f64> {
+impl PathOfContact<f64> {
     /// A spur pair 17/22 of standard proportions, for examples and tests.
     pub fn typical() -> Self {
         Self {

@@ -10,7 +10,7 @@ use super::Model;
 
 /// Whose speed or load it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Who {
+pub enum ShaftRef {
     /// Where power enters when driving, in the state at hand.
     Input,
     /// Where power leaves when driving.
@@ -23,12 +23,12 @@ pub enum Who {
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
     /// A prescribed speed.
-    Speed(Who),
+    Speed(ShaftRef),
     /// A torque. Of the input and the output: positive drives, so that power enters at the input and leaves at the
     /// output; of a member: the external torque on it, as in the train file.
-    Torque(Who),
+    Torque(ShaftRef),
     /// A power, with the same signs.
-    Power(Who),
+    Power(ShaftRef),
     /// Speed of the input over that of the output: the input turns as the operation says, and the output follows.
     Ratio,
     /// Power out of the store of the variator with that place in the train.
@@ -98,9 +98,9 @@ impl Target {
         }
         if let Some((who, what)) = name.rsplit_once('.')
             && let Some(who) = match who {
-                "input" => Some(Who::Input),
-                "output" => Some(Who::Output),
-                _ => train.member(who).map(Who::Member),
+                "input" => Some(ShaftRef::Input),
+                "output" => Some(ShaftRef::Output),
+                _ => train.member(who).map(ShaftRef::Member),
             }
         {
             match what {

@@ -4,7 +4,7 @@ use num_dual::Dual;
 use serde::{Deserialize, Serialize};
 
 use crate::catalogue::bearing::Kind;
-use crate::losses::Outside;
+use crate::losses::OutsideValidity;
 use crate::losses::bearing::{BearingDuty, BearingTorque, Palmgren, Supply, Turning};
 use crate::losses::plain_bearing::{Journal, PlainBearing};
 use crate::real::{self, Real};
@@ -67,7 +67,7 @@ impl<R: Real> Duty<R> {
 
 impl Duty<f64> {
     /// Family, law, and what lies outside its range.
-    fn outside(&self) -> (&'static str, &'static str, Vec<Outside>) {
+    fn outside(&self) -> (&'static str, &'static str, Vec<OutsideValidity>) {
         match self {
             Self::Rolling(law, d) => {
                 let plain = BearingDuty {

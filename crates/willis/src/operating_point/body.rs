@@ -1,7 +1,7 @@
 //! Gears that turn in air or oil, rotors, seals: losses that depend on speed alone.
 
 use crate::exact::Rational;
-use crate::losses::Outside;
+use crate::losses::OutsideValidity;
 use crate::losses::churning::ImmersedGear;
 use crate::losses::clutch_drag::OpenPack;
 use crate::losses::injection::JetAtMesh;
@@ -303,7 +303,7 @@ impl Physics<'_> {
     /// Where the laws of seals, gears and rotors were used outside their ranges.
     pub(super) fn wet_extrapolations(&self, speeds: &[f64], all: &mut Vec<Extrapolation>) {
         let laws = &self.train.laws;
-        let mut note = |family, law, at: &str, outside: Vec<Outside>| {
+        let mut note = |family, law, at: &str, outside: Vec<OutsideValidity>| {
             all.extend(outside.into_iter().map(|outside| Extrapolation { family, law, at: at.to_owned(), outside }));
         };
         for (k, seal) in self.train.seals.iter().enumerate() {

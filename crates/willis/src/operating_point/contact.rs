@@ -6,10 +6,10 @@ use crate::geometry::Pair;
 use crate::losses::film::FilmContact;
 use crate::losses::film_reduction::Inlet;
 use crate::losses::load_sharing::{Relief, ToothLoad};
-use crate::losses::loss_factor::Path;
+use crate::losses::loss_factor::PathOfContact;
 use crate::losses::mesh_friction::{MeshContact, MeshFriction};
 use crate::losses::rolling::RollingContact;
-use crate::losses::{Outside, Tag};
+use crate::losses::{OutsideValidity, Tag};
 use crate::power_flow::MeshFlow;
 use crate::real::{self, Real};
 use crate::train::{Mesh, Teeth};
@@ -18,10 +18,11 @@ use super::{Extrapolation, OilState, Physics};
 
 /// Lubrication of a contact by its film thickness ratio λ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+// The schema keeps the name that is published.
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Regime"))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
-pub enum Regime {
+pub enum LubricationRegime {
     /// λ < 1: the load is carried by asperities.
     Boundary,
     /// 1 ≤ λ < 3: asperities and film share it.
@@ -30,7 +31,7 @@ pub enum Regime {
     Full,
 }
 
-impl Regime {
+impl LubricationRegime {
     /// For people: `mixed`.
     pub fn words(self) -> &'static str {
         match self {
@@ -95,7 +96,7 @@ pub struct ContactReport {
     /// Smallest film thickness over the composite rms roughness, `λ`.
     pub film_ratio: Option<f64>,
     /// Lubrication by `λ`.
-    pub regime: Option<Regime>,
+    pub regime: Option<LubricationRegime>,
     /// Loss by sliding, all pairs in parallel, W.
     pub sliding_loss_w: f64,
     /// The part of it by sliding along the teeth of hypoid gears, W.
@@ -285,8 +286,8 @@ impl<R: Real> Loaded<'_, R> {
     }
 
     /// The path of contact with the relief under this load.
-    fn path(&self) -> Path<R> {
-        Path { relief: self.relief, ..Path::of(&self.teeth.pair) }
+    fn path(&self) -> PathOfContact<R> {
+        PathOfContact { relief: self.relief, ..PathOfContact::of(&self.teeth.pair) }
     }
 
     fn inlet(&self, oil: &OilState<R>, sliding: R, sum: R, pressure: R) -> Inlet<R> {
@@ -418,7 +419,7 @@ impl<R: Real> Physics<'_, R> {
             let inside = |[from, to]: [R; 2]| [from + (to - from) * 1e-9, to - (to - from) * 1e-9];
             let ends = parts(teeth).filter(|[from, to]| to.re() > from.re()).flat_map(inside);
             Fixed {
-                loss_factor: self.train.laws.loss_factor(&self.friction).eval(&Path::of(pair)),
+                loss_factor: self.train.laws.loss_factor(&self.friction).eval(&PathOfContact::of(pair)),
                 pitch: self.place(pair, none),
                 sine: pair.operating_pressure_angle.sin(),
                 radius_transverse: pair.reduced_radius_transverse(none),
@@ -664,7 +665,7 @@ impl Physics<'_> {
             pitch_film_m: film.map(|_| hard.film),
             film_m: film,
             film_ratio,
-            regime: film_ratio.map(Regime::of),
+            regime: film_ratio.map(LubricationRegime::of),
             sliding_loss_w: 0.0,
             lengthwise_loss_w: None,
             lengthwise_efficiency: None,
@@ -687,7 +688,7 @@ impl Physics<'_> {
         let laws = &self.train.laws;
         let fixed = self.fixed(teeth, flow);
         let loaded = self.loaded(mesh, teeth, flow);
-        let mut note = |family, law, outside: Vec<Outside>| {
+        let mut note = |family, law, outside: Vec<OutsideValidity>| {
             all.extend(outside.into_iter().map(|outside| Extrapolation {
                 family,
                 law,

@@ -1,6 +1,6 @@
 //! Every continuous number that the laws read of a train, in any kind of number.
 
-use crate::catalogue::bearing::Data;
+use crate::catalogue::bearing::BearingData;
 use crate::catalogue::oil::Curves;
 use crate::losses::mesh_friction::{Constant, MeshFriction};
 use crate::real::Real;
@@ -75,7 +75,7 @@ impl VariatorNumbers<f64> {
 /// Numbers of the bearings at one place.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MountNumbers<R> {
-    pub data: Data<R>,
+    pub data: BearingData<R>,
     pub span: Option<R>,
     /// Where their middle stands along the axis, m.
     pub position: Option<R>,

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::analysis::{Named, Role};
+use crate::analysis::{NameMap, Role};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::symbolic::{Function, Notation, Symbol};
+use crate::symbolic::{Notation, RationalFunction, Symbol};
 use crate::train::{FRAME, MemberId};
 
 use super::arrangement::{self, dot};
@@ -41,7 +41,7 @@ pub(crate) fn atlas(
         independent_torques: 0,
         base_speeds: vec![],
         reason: None,
-        symbols: Named::default(),
+        symbols: NameMap::default(),
         planes: vec![],
         regions: vec![],
         regimes: vec![],
@@ -188,7 +188,7 @@ fn regime(setup: &Setup<'_>, region: &RegionReport, base: &[Rational], cell: &To
         roles: setup.by_terminal(|t| role(powers[t])),
         inputs: with(1),
         outputs: with(-1),
-        drivers: Named(drivers(setup, &cell.pattern)),
+        drivers: NameMap(drivers(setup, &cell.pattern)),
         formula: String::new(),
         efficiency_range: limits(setup, region, &cell.pattern, &torques),
         example: ExamplePoint {
@@ -712,7 +712,7 @@ fn formula_report(shape: &Shape<'_, '_>, id: String, driven: &Driven, regimes: V
     let Driven { pattern, powers, own } = driven;
     let own = own.as_ref().expect("made with the shape");
     let of = |sign: i8| names(setup, (0..powers.len()).filter(|&t| powers[t] == sign));
-    let show = |f: &Function| own.names.show(Notation::Text, f);
+    let show = |f: &RationalFunction| own.names.show(Notation::Text, f);
     let driving: Vec<String> = drivers(setup, pattern)
         .into_iter()
         .filter_map(|(e, d)| d.map(|d| if setup.active.len() > 1 { format!("{d} in {e}") } else { d }))

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{DrivingLoad, OperationReport, in_force};
 use crate::losses::mesh_friction::Constant;
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::train::{Efficiency, Load, Operation, Train};
 
 /// Where the efficiencies of meshes come from whose losses laws compute.
@@ -54,16 +54,16 @@ pub struct EfficiencyBasis {
     pub operation: Option<String>,
     /// Speed of each member that is loaded from outside there, rad/s. Nothing of nominal efficiencies.
     #[serde(default)]
-    pub speeds_rad_s: Named<f64>,
+    pub speeds_rad_s: NameMap<f64>,
     /// Torque on each of them, N m.
     #[serde(default)]
-    pub torques_n_m: Named<f64>,
+    pub torques_n_m: NameMap<f64>,
     /// Oil temperature there, K: prescribed, of the heat balance, or of the oil.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub temperature_k: Option<f64>,
     /// Efficiency of each mesh whose losses are computed, with what bearings lose by its load; to six decimals, the same
     /// whichever gear drives.
-    pub efficiencies: Named<f64>,
+    pub efficiencies: NameMap<f64>,
     /// Meshes that carry nothing or do not move there: theirs are nominal.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub nominal: Vec<String>,
@@ -181,8 +181,8 @@ pub(super) fn basis(
     let reason = if tried.is_empty() { NoBasis::NoOperation } else { NoBasis::NotUnique(tried) };
     let basis = EfficiencyBasis {
         operation: None,
-        speeds_rad_s: Named::default(),
-        torques_n_m: Named::default(),
+        speeds_rad_s: NameMap::default(),
+        torques_n_m: NameMap::default(),
         temperature_k: None,
         efficiencies: computed(train, &efficiencies),
         nominal: vec![],
@@ -201,8 +201,8 @@ fn found(
 ) -> (Vec<Efficiency>, EfficiencyBasis) {
     let mut basis = EfficiencyBasis {
         operation,
-        speeds_rad_s: Named::default(),
-        torques_n_m: Named::default(),
+        speeds_rad_s: NameMap::default(),
+        torques_n_m: NameMap::default(),
         temperature_k: report.oil_k(train, point),
         efficiencies: computed(train, &efficiencies),
         nominal: vec![],
@@ -228,7 +228,7 @@ fn found(
     (efficiencies, basis)
 }
 
-fn computed(train: &Train, efficiencies: &[Efficiency]) -> Named<f64> {
+fn computed(train: &Train, efficiencies: &[Efficiency]) -> NameMap<f64> {
     let own = train.meshes.iter().zip(efficiencies).filter(|(mesh, _)| mesh.computed);
     own.map(|(mesh, own)| (mesh.name.clone(), own.forward.to_f64())).collect()
 }

@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use crate::analysis::Named;
+use crate::analysis::NameMap;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::symbolic::{Function, Notation, Symbol};
+use crate::symbolic::{Notation, RationalFunction, Symbol};
 use crate::train::{AS_DRAWN, MemberId, Train};
 
 use super::atlas::{arrow, atlas, drivers};
@@ -79,11 +79,11 @@ pub struct Argument {
 
 impl Argument {
     /// What is wrong with a value that it can never have; `None` if it can have every value.
-    pub(crate) fn range(&self) -> Option<Outside> {
+    pub(crate) fn range(&self) -> Option<FormulaError> {
         match self.kind {
-            SymbolKind::Efficiency => Some(Outside::NoEfficiency(self.name.clone())),
-            SymbolKind::Teeth => Some(Outside::NoTeeth(self.name.clone())),
-            SymbolKind::Ratio => Some(Outside::NoRatio(self.name.clone())),
+            SymbolKind::Efficiency => Some(FormulaError::NoEfficiency(self.name.clone())),
+            SymbolKind::Teeth => Some(FormulaError::NoTeeth(self.name.clone())),
+            SymbolKind::Ratio => Some(FormulaError::NoRatio(self.name.clone())),
             SymbolKind::Torque | SymbolKind::Speed => None,
         }
     }
@@ -117,15 +117,15 @@ pub struct ClosedFormula {
     /// Terminals where power leaves.
     pub outputs: Vec<String>,
     /// Which end drives each element.
-    pub drivers: Named<Option<String>>,
+    pub drivers: NameMap<Option<String>>,
     /// What it takes.
     pub arguments: Vec<Argument>,
-    pub(crate) efficiency: Function,
+    pub(crate) efficiency: RationalFunction,
     /// One freedom: `ω_from/ω_to` and `T_to/T_from`.
-    pub(crate) ratios: Option<[Function; 2]>,
+    pub(crate) ratios: Option<[RationalFunction; 2]>,
     /// More freedoms: every terminal's (speed symbol, speed, torque symbol, torque).
     pub(crate) terminals: Vec<TerminalFormula>,
-    pub(crate) conditions: Vec<(Function, String)>,
+    pub(crate) conditions: Vec<(RationalFunction, String)>,
     pub(crate) names: Names,
     /// More freedoms: all formulas of the state, this one among them.
     pub(crate) together: Option<Arc<Together>>,
@@ -144,7 +144,7 @@ pub(crate) struct Together {
     /// What their conditions take.
     pub arguments: Vec<Argument>,
     /// Speeds that follow from those: name and, by notation, expression.
-    pub speeds: Vec<(Symbol, Function, Names)>,
+    pub speeds: Vec<(Symbol, RationalFunction, Names)>,
     pub all: Vec<Holds>,
 }
 
@@ -157,16 +157,16 @@ pub(crate) struct Holds {
     pub regimes: Vec<String>,
     /// Inputs and outputs, in words.
     pub title: String,
-    pub conditions: Vec<Function>,
+    pub conditions: Vec<RationalFunction>,
     pub names: Names,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct TerminalFormula {
     pub speed_symbol: Symbol,
-    pub speed: Function,
+    pub speed: RationalFunction,
     pub torque_symbol: Symbol,
-    pub torque: Function,
+    pub torque: RationalFunction,
     pub given_speed: bool,
     pub given_torque: bool,
 }
@@ -174,7 +174,7 @@ pub(crate) struct TerminalFormula {
 /// Why a formula gives no number.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Outside {
+pub enum FormulaError {
     /// An argument has no value.
     Missing(String),
     /// An efficiency is not above 0 and at most 1.
@@ -189,7 +189,7 @@ pub enum Outside {
     Pole,
 }
 
-impl std::fmt::Display for Outside {
+impl std::fmt::Display for FormulaError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Missing(name) => write!(f, "no value for {name}"),
@@ -202,15 +202,15 @@ impl std::fmt::Display for Outside {
     }
 }
 
-impl std::error::Error for Outside {}
+impl std::error::Error for FormulaError {}
 
-impl From<Outside> for Diagnostic {
-    fn from(outside: Outside) -> Self {
+impl From<FormulaError> for Diagnostic {
+    fn from(outside: FormulaError) -> Self {
         Self::new(Code::Unfit, "", outside.to_string())
     }
 }
 
-through_diagnostic!(Outside);
+through_diagnostic!(FormulaError);
 
 /// A derivative of the efficiency.
 #[derive(Clone, Debug, PartialEq)]
@@ -276,10 +276,10 @@ impl ClosedFormula {
     /// assert!(at(Rational::new(1, 2)).is_err());
     /// # Ok::<(), willis::Diagnostics>(())
     /// ```
-    pub fn evaluate(&self, value: &dyn Fn(&str) -> Option<Rational>) -> Result<Rational, Outside> {
+    pub fn evaluate(&self, value: &dyn Fn(&str) -> Option<Rational>) -> Result<Rational, FormulaError> {
         let mut values: Vec<(Symbol, Rational)> = Vec::new();
         for a in &self.arguments {
-            let v = value(&a.name).ok_or_else(|| Outside::Missing(a.name.clone()))?;
+            let v = value(&a.name).ok_or_else(|| FormulaError::Missing(a.name.clone()))?;
             if let (false, Some(outside)) = (a.allows(&v), a.range()) {
                 return Err(outside);
             }
@@ -287,16 +287,16 @@ impl ClosedFormula {
         }
         // Dependent speeds and torques from the given ones.
         for (symbol, function) in self.dependent() {
-            let v = function.evaluate(&lookup(&values)).ok_or(Outside::Pole)?;
+            let v = function.evaluate(&lookup(&values)).ok_or(FormulaError::Pole)?;
             values.push((symbol, v));
         }
         let of = lookup(&values);
         for (f, text) in &self.conditions {
             if f.evaluate(&of).is_none_or(|v| v.sign() <= 0) {
-                return Err(Outside::Condition(text.clone()));
+                return Err(FormulaError::Condition(text.clone()));
             }
         }
-        self.efficiency.evaluate(&of).ok_or(Outside::Pole)
+        self.efficiency.evaluate(&of).ok_or(FormulaError::Pole)
     }
 
     /// Derivatives of the efficiency with respect to every efficiency in it, the one that costs
@@ -335,7 +335,7 @@ impl ClosedFormula {
 
     /// Speeds and then torques that follow from those given, in an order in which they can be
     /// evaluated: with balanced powers a torque depends on dependent speeds.
-    pub(crate) fn dependent(&self) -> impl Iterator<Item = (Symbol, &Function)> {
+    pub(crate) fn dependent(&self) -> impl Iterator<Item = (Symbol, &RationalFunction)> {
         let speeds = self.terminals.iter().filter(|t| !t.given_speed).map(|t| (t.speed_symbol, &t.speed));
         let torques = self.terminals.iter().filter(|t| !t.given_torque).map(|t| (t.torque_symbol, &t.torque));
         speeds.chain(torques)
@@ -403,7 +403,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
         return Err(errors);
     }
     let several = states.len() > 1;
-    for super::Choice { state, configuration: c, terminals: members, balance, basis } in states {
+    for super::SelectedConfiguration { state, configuration: c, terminals: members, balance, basis } in states {
         let [input, output] = train.ends(train.states.iter().position(|s| s.name == state));
         // As drawn is left out when a shift table says how the train is used.
         let unasked = several && state == AS_DRAWN;
@@ -655,7 +655,7 @@ fn closed(
         regimes: vec![],
         inputs: of(1),
         outputs: of(-1),
-        drivers: Named(drivers(setup, pattern)),
+        drivers: NameMap(drivers(setup, pattern)),
         arguments,
         efficiency: own.efficiency.clone(),
         ratios: None,
@@ -680,7 +680,7 @@ impl ClosedFormula {
     /// Leaves only arguments that occur, and those that are given.
     fn keep_used(&mut self) {
         let mut used: Vec<Symbol> = self.efficiency.symbols();
-        used.extend(self.ratios.iter().flatten().flat_map(Function::symbols));
+        used.extend(self.ratios.iter().flatten().flat_map(RationalFunction::symbols));
         used.extend(self.conditions.iter().flat_map(|(f, _)| f.symbols()));
         for t in &self.terminals {
             used.extend(t.speed.symbols());

@@ -8,7 +8,7 @@
 use std::fmt::Write;
 
 use crate::diagnostic::is_printable;
-use crate::symbolic::{Function, Notation, Symbol};
+use crate::symbolic::{Notation, RationalFunction, Symbol};
 
 use super::closed::{Argument, ClosedFormula, FormulaSheet, Holds, Together};
 use super::formula::{Names, SymbolKind, escape, upright};
@@ -331,7 +331,7 @@ impl<'f> Code<'f> {
 
     /// The value that the train gives an argument, where it does, within a pattern such as `=@`.
     fn value(&self, a: &Argument, pattern: &str) -> String {
-        let value = || self.notation.function(&Function::from(a.exact.clone()), &|_| String::new());
+        let value = || self.notation.function(&RationalFunction::from(a.exact.clone()), &|_| String::new());
         if a.fixed { pattern.replace('@', &value()) } else { String::new() }
     }
 
@@ -570,7 +570,8 @@ impl<'f> Count<'f> {
         let mut arguments: Vec<&Argument> = together.arguments.iter().collect();
         arguments.sort_by_key(|a| a.fixed);
         let conditions = |h: &Holds| h.conditions.iter().map(|c| h.names.show(notation, c)).collect();
-        let speed = |(s, f, names): &(Symbol, Function, Names)| (names.info(*s).name.clone(), names.show(notation, f));
+        let speed =
+            |(s, f, names): &(Symbol, RationalFunction, Names)| (names.info(*s).name.clone(), names.show(notation, f));
         Self {
             notation,
             numbers: arguments.iter().filter(|a| !a.efficiency).map(|a| a.name.as_str()).collect(),
@@ -595,7 +596,7 @@ impl<'f> Count<'f> {
     }
 
     fn value(&self, a: &Argument, pattern: &str) -> String {
-        let value = || self.notation.function(&Function::from(a.exact.clone()), &|_| String::new());
+        let value = || self.notation.function(&RationalFunction::from(a.exact.clone()), &|_| String::new());
         if a.fixed { pattern.replace('@', &value()) } else { String::new() }
     }
 

@@ -8,7 +8,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::Named;
+use crate::analysis::NameMap;
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
@@ -17,7 +17,7 @@ use crate::train::Train;
 use super::atlas::{assignment_order, atlas};
 use super::basis::EfficiencyBasis;
 use super::setup::{Linked, Setup};
-use super::{Choice, RegimeSelection, selected};
+use super::{RegimeSelection, SelectedConfiguration, selected};
 
 /// Every regime of a set with three terminals, over all basic ratios.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -41,7 +41,7 @@ pub struct Family {
     /// Efficiency seen from the carrier, p driving and q driving.
     pub efficiencies: [f64; 2],
     /// The ranges of R.
-    pub cases: Vec<Case>,
+    pub cases: Vec<FamilyCase>,
     /// The assignments of inputs and outputs, in the paper's order, with their regimes in each range.
     pub rows: Vec<Row>,
     /// Number of regimes in all ranges.
@@ -57,9 +57,10 @@ impl Contract for Family {
 
 /// A range of basic ratios.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+// The schema keeps the name that is published.
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Case"))]
 #[non_exhaustive]
-pub struct Case {
+pub struct FamilyCase {
     /// `R > 1/eta`.
     pub label: String,
     /// In LaTeX.
@@ -110,7 +111,7 @@ pub struct Group {
 #[non_exhaustive]
 pub struct FamilyRange {
     /// Sign of each terminal's torque.
-    pub torque_signs: Named<i8>,
+    pub torque_signs: NameMap<i8>,
     /// Terminals and `0`, from the fastest down.
     pub order: Vec<String>,
     /// Efficiency at the example ratio, at speeds in the middle of the range.
@@ -147,7 +148,7 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
     };
     let choices = selected(train, selection)?;
     let mut reason = "the train has no state with two degrees of freedom".to_owned();
-    for Choice { state, configuration, terminals, basis, .. } in choices {
+    for SelectedConfiguration { state, configuration, terminals, basis, .. } in choices {
         let setup = match Setup::new(configuration.clone(), &terminals, Linked::Nothing) {
             Ok(setup) => setup,
             Err(why) => {
@@ -208,7 +209,7 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
             let band = low.as_ref() == Some(&one) && high.is_some()
                 || high.as_ref() == Some(&one) && low.as_ref().is_some_and(|l| !l.is_zero());
             let float = |x: &Option<Rational>| x.as_ref().map(Rational::to_f64);
-            cases.push(Case {
+            cases.push(FamilyCase {
                 label: label("R", eta, &low, &high),
                 latex: label("R", tex, &low, &high),
                 low: float(&low),

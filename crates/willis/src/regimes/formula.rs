@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::exact::Rational;
-use crate::symbolic::{self, Function, Notation, Polynomial, Symbol};
+use crate::symbolic::{self, Notation, Polynomial, RationalFunction, Symbol};
 use crate::train::MeshId;
 
 use super::hub::Hubs;
@@ -55,13 +55,13 @@ pub(crate) struct Shape<'s, 't> {
     /// Terminals whose torques are free.
     pub reference: Vec<usize>,
     /// By terminal and reference: `T = Σ factor T_reference`, in `x`.
-    pub torque: Vec<Vec<Function>>,
+    pub torque: Vec<Vec<RationalFunction>>,
     /// By active element and reference, in `x`.
-    pub force: Vec<Vec<Function>>,
+    pub force: Vec<Vec<RationalFunction>>,
     /// By terminal and base: `ω = Σ factor ω_base`, in `i`.
-    pub speed: Vec<Vec<Function>>,
+    pub speed: Vec<Vec<RationalFunction>>,
     /// By active element: `ω_p − ω_c` in the speeds of the terminals.
-    pub sigma: Vec<Function>,
+    pub sigma: Vec<RationalFunction>,
     pub names: Names,
     /// `torque` and `force` for drivers, once worked out.
     driven: RefCell<BTreeMap<Pattern, Rc<Driven>>>,
@@ -70,8 +70,8 @@ pub(crate) struct Shape<'s, 't> {
 /// Torques and forces over the references when it is known who drives.
 #[derive(Clone, Debug)]
 struct Driven {
-    torque: Vec<Vec<Function>>,
-    force: Vec<Vec<Function>>,
+    torque: Vec<Vec<RationalFunction>>,
+    force: Vec<Vec<RationalFunction>>,
 }
 
 /// Most terms of a determinant: longer formulas help nobody.
@@ -84,7 +84,7 @@ pub(crate) struct Names {
     elements: usize,
     terminals: usize,
     /// What a basic ratio or efficiency is made of.
-    details: BTreeMap<Symbol, Function>,
+    details: BTreeMap<Symbol, RationalFunction>,
     /// By element whose two directions have efficiencies of their own: its symbol where end q drives. That where p drives
     /// has the number of the element's efficiency.
     backward: Vec<Option<SymbolInfo>>,
@@ -139,7 +139,7 @@ impl Names {
         }
     }
 
-    pub fn show(&self, notation: Notation, f: &Function) -> String {
+    pub fn show(&self, notation: Notation, f: &RationalFunction) -> String {
         notation.function(f, &|s| self.written(notation, s))
     }
 
@@ -302,7 +302,7 @@ impl Names {
         let train = setup.c.train;
         let mut teeth: Vec<(usize, usize, Symbol)> = Vec::new();
         for j in 0..self.elements {
-            let mut ratio = Function::ONE;
+            let mut ratio = RationalFunction::ONE;
             for link in &setup.element(j).links {
                 let mesh = &train.meshes[link.mesh.0];
                 let mut symbols = [0, 1].map(|g| {
@@ -335,7 +335,7 @@ impl Names {
                     symbols.reverse();
                 }
                 // (ω_1 − ω_c)/(ω_2 − ω_c) = ∓ z_2/z_1
-                let [from, to] = symbols.map(Function::symbol);
+                let [from, to] = symbols.map(RationalFunction::symbol);
                 let own = to.over(&from);
                 ratio = ratio.times(&if mesh.same_sense { own } else { own.negated() });
             }
@@ -367,7 +367,7 @@ impl Names {
     fn mesh_efficiencies(&mut self, setup: &Setup<'_>, pattern: &Pattern) {
         let train = setup.c.train;
         for j in 0..self.elements {
-            let mut product = Function::ONE;
+            let mut product = RationalFunction::ONE;
             for link in &setup.element(j).links {
                 let MeshId(m) = link.mesh;
                 let mesh = &train.meshes[m];
@@ -390,7 +390,7 @@ impl Names {
                     meaning: format!("efficiency of {}, {a} driving {b}", mesh.name),
                     made_of: None,
                 });
-                product = product.times(&Function::symbol(s));
+                product = product.times(&RationalFunction::symbol(s));
             }
             self.details.insert(self.efficiency(j), product);
         }
@@ -406,20 +406,20 @@ impl Names {
     }
 
     /// Ratio of an element in formulas: one where it only joins its ends, or measures a planet.
-    fn ratio_of(&self, j: usize) -> Function {
-        if self.hubs.is_hub(j) { Function::ONE } else { Function::symbol(self.ratio(j)) }
+    fn ratio_of(&self, j: usize) -> RationalFunction {
+        if self.hubs.is_hub(j) { RationalFunction::ONE } else { RationalFunction::symbol(self.ratio(j)) }
     }
 
     /// `ρ` of an element for a pattern of drivers.
-    fn rho(&self, setup: &Setup<'_>, pattern: &Pattern, j: usize) -> Function {
+    fn rho(&self, setup: &Setup<'_>, pattern: &Pattern, j: usize) -> RationalFunction {
         if self.hubs.is_hub(j) && self.hubs.is_shared(setup, pattern, j) {
-            return Function::ONE;
+            return RationalFunction::ONE;
         }
-        let eta = Function::symbol(self.efficiency(j));
+        let eta = RationalFunction::symbol(self.efficiency(j));
         match pattern[j] {
             Some(true) => eta,
             Some(false) => eta.recip(),
-            None => Function::ONE,
+            None => RationalFunction::ONE,
         }
     }
 }
@@ -504,7 +504,7 @@ pub(crate) fn escape(text: &str) -> String {
 /// A condition of a formula: a function that must be positive.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Condition {
-    pub function: Function,
+    pub function: RationalFunction,
     /// What it ensures.
     pub meaning: String,
 }
@@ -542,9 +542,6 @@ impl<'s, 't> Shape<'s, 't> {
         let nodes = setup.nodes();
         let too_long =
             || format!("with {k} elements and {} shafts they would have more than {MOST_TERMS} terms", nodes.len());
-        if nodes.len() > 60 {
-            return Err(too_long());
-        }
         let names = Names::new(setup);
         // What only joins its ends has the ratio one.
         let over = |symbol: &dyn Fn(usize) -> Symbol| -> Vec<Polynomial> {
@@ -581,7 +578,7 @@ impl<'s, 't> Shape<'s, 't> {
         let determinant = |rows: &[Vec<Polynomial>]| {
             let columns: Vec<Vec<Polynomial>> =
                 (0..rows.len()).map(|c| rows.iter().map(|r| r[c].clone()).collect()).collect();
-            symbolic::determinant(&columns, MOST_TERMS).map(|d| d.to_function()).ok_or_else(too_long)
+            symbolic::determinant(&columns, MOST_TERMS).ok_or_else(too_long)
         };
         let whole = determinant(&rows)?;
         if whole.is_zero() {
@@ -595,18 +592,18 @@ impl<'s, 't> Shape<'s, 't> {
         };
         let d = setup.torques;
         let torque = (0..setup.terminals.len())
-            .map(|t| -> Result<Vec<Function>, String> {
+            .map(|t| -> Result<Vec<RationalFunction>, String> {
                 (0..d)
                     .map(|r| match reference.iter().position(|&own| own == t) {
-                        Some(own) if own == r => Ok(Function::ONE),
-                        Some(_) => Ok(Function::ZERO),
+                        Some(own) if own == r => Ok(RationalFunction::ONE),
+                        Some(_) => Ok(RationalFunction::ZERO),
                         None => with_row(r, row(setup.terminals[t].node, &x)),
                     })
                     .collect()
             })
             .collect::<Result<_, _>>()?;
         let force = (0..k)
-            .map(|j| -> Result<Vec<Function>, String> {
+            .map(|j| -> Result<Vec<RationalFunction>, String> {
                 (0..d).map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect())).collect()
             })
             .collect::<Result<_, _>>()?;
@@ -619,44 +616,42 @@ impl<'s, 't> Shape<'s, 't> {
                 column.push(Polynomial::from(i64::from(setup.terminals[b].node == *n)));
             }
         }
-        let whole = symbolic::determinant(&columns, MOST_TERMS).map(|d| d.to_function()).ok_or_else(too_long)?;
+        let whole = symbolic::determinant(&columns, MOST_TERMS).ok_or_else(too_long)?;
         if whole.is_zero() {
             return Err("the speeds are not determined by those of the terminals".to_owned());
         }
-        let node_speeds: Vec<Vec<Function>> = (0..nodes.len())
+        let node_speeds: Vec<Vec<RationalFunction>> = (0..nodes.len())
             .map(|at| {
                 (0..setup.base.len())
                     .map(|b| {
                         // Cramer: the node's column replaced by the unit vector of base b's row.
                         let mut changed = columns.clone();
                         changed[at] = (0..nodes.len()).map(|r| Polynomial::from(i64::from(r == k + b))).collect();
-                        symbolic::determinant(&changed, MOST_TERMS)
-                            .map(|d| d.to_function().over(&whole))
-                            .ok_or_else(too_long)
+                        symbolic::determinant(&changed, MOST_TERMS).map(|d| d.over(&whole)).ok_or_else(too_long)
                     })
                     .collect()
             })
             .collect::<Result<_, String>>()?;
-        let node_speed = |node: usize, b: usize| -> Function {
-            nodes.iter().position(|&n| n == node).map_or(Function::ZERO, |at| node_speeds[at][b].clone())
+        let node_speed = |node: usize, b: usize| -> RationalFunction {
+            nodes.iter().position(|&n| n == node).map_or(RationalFunction::ZERO, |at| node_speeds[at][b].clone())
         };
         let speed = (0..setup.terminals.len())
             .map(|t| {
                 (0..setup.base.len())
                     .map(|b| match setup.base.iter().position(|&own| own == t) {
-                        Some(own) if own == b => Function::ONE,
-                        Some(_) => Function::ZERO,
+                        Some(own) if own == b => RationalFunction::ONE,
+                        Some(_) => RationalFunction::ZERO,
                         None => node_speed(setup.terminals[t].node, b),
                     })
-                    .collect::<Vec<Function>>()
+                    .collect::<Vec<RationalFunction>>()
             })
             .collect();
-        let in_terminals = |node: Option<usize>| -> Function {
-            let Some(node) = node else { return Function::ZERO };
+        let in_terminals = |node: Option<usize>| -> RationalFunction {
+            let Some(node) = node else { return RationalFunction::ZERO };
             match setup.terminals.iter().position(|t| t.node == node) {
-                Some(t) => Function::symbol(names.speed(t)),
-                None => (0..setup.base.len()).fold(Function::ZERO, |sum, b| {
-                    sum.plus(&node_speed(node, b).times(&Function::symbol(names.speed(setup.base[b]))))
+                Some(t) => RationalFunction::symbol(names.speed(t)),
+                None => (0..setup.base.len()).fold(RationalFunction::ZERO, |sum, b| {
+                    sum.plus(&node_speed(node, b).times(&RationalFunction::symbol(names.speed(setup.base[b]))))
                 }),
             }
         };
@@ -676,7 +671,7 @@ impl<'s, 't> Shape<'s, 't> {
     }
 
     /// The value of `x = i ρ` that a driver makes.
-    fn x_value(&self, pattern: &Pattern, s: Symbol) -> Option<Function> {
+    fn x_value(&self, pattern: &Pattern, s: Symbol) -> Option<RationalFunction> {
         let k = self.setup.active.len();
         let j = s.0.checked_sub(2 * k).filter(|j| *j < k)?;
         let rho = |j: usize| self.names.rho(self.setup, pattern, j);
@@ -691,8 +686,9 @@ impl<'s, 't> Shape<'s, 't> {
     fn driven(&self, pattern: &Pattern) -> Rc<Driven> {
         let known = self.driven.borrow().get(pattern).cloned();
         known.unwrap_or_else(|| {
-            let here = |f: &Function| f.substituted(&|s| self.x_value(pattern, s)).expect("x has no poles of its own");
-            let all = |rows: &[Vec<Function>]| rows.iter().map(|r| r.iter().map(here).collect()).collect();
+            let here =
+                |f: &RationalFunction| f.substituted(&|s| self.x_value(pattern, s)).expect("x has no poles of its own");
+            let all = |rows: &[Vec<RationalFunction>]| rows.iter().map(|r| r.iter().map(here).collect()).collect();
             let own = Rc::new(Driven { torque: all(&self.torque), force: all(&self.force) });
             self.driven.borrow_mut().insert(pattern.clone(), own.clone());
             own
@@ -732,15 +728,15 @@ impl<'s, 't> Shape<'s, 't> {
         if efficiencies == Efficiencies::Meshes {
             names.mesh_efficiencies(setup, pattern);
         }
-        let spelt = |f: &Function| -> Function {
+        let spelt = |f: &RationalFunction| -> RationalFunction {
             let value = |s: Symbol| {
                 let info = names.info(s);
                 match info.kind {
                     SymbolKind::Ratio if ratios == Ratios::Teeth => names.details.get(&s).cloned(),
-                    SymbolKind::Ratio if ratios == Ratios::Numbers => info.value.clone().map(Function::from),
+                    SymbolKind::Ratio if ratios == Ratios::Numbers => info.value.clone().map(RationalFunction::from),
                     SymbolKind::Efficiency if efficiencies == Efficiencies::Meshes => names.details.get(&s).cloned(),
                     SymbolKind::Efficiency if efficiencies == Efficiencies::Numbers => {
-                        info.value.clone().map(Function::from)
+                        info.value.clone().map(RationalFunction::from)
                     }
                     _ => None,
                 }
@@ -750,60 +746,66 @@ impl<'s, 't> Shape<'s, 't> {
         };
         let driven = self.driven(pattern);
         let torque = &driven.torque;
-        let mut references: Vec<Function> = self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
+        let mut references: Vec<RationalFunction> =
+            self.reference.iter().map(|&t| RationalFunction::symbol(names.torque(t))).collect();
         let through = setup.link.as_ref().map(|link| (link.ends, pattern[k]));
         if let Some(([a, b], forward)) = through {
             let rho = match (names.link, forward) {
-                (Some([eta, _]), Some(true)) => Function::symbol(eta),
-                (Some([_, eta]), Some(false)) => Function::symbol(eta).recip(),
-                _ => Function::ONE,
+                (Some([eta, _]), Some(true)) => RationalFunction::symbol(eta),
+                (Some([_, eta]), Some(false)) => RationalFunction::symbol(eta).recip(),
+                _ => RationalFunction::ONE,
             };
             // ρ T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
             let factor = |r: usize| {
-                let part = |t: usize| torque[t][r].times(&Function::symbol(names.speed(t)));
+                let part = |t: usize| torque[t][r].times(&RationalFunction::symbol(names.speed(t)));
                 part(a).times(&rho).plus(&part(b))
             };
             references[1] = references[0].times(&factor(0)).over(&factor(1)).negated();
         }
         let d = setup.independent_torques();
-        let sum_over_references = |factors: &[Function]| {
-            factors.iter().zip(&references).fold(Function::ZERO, |sum, (f, t)| sum.plus(&f.times(t)))
+        let sum_over_references = |factors: &[RationalFunction]| {
+            factors.iter().zip(&references).fold(RationalFunction::ZERO, |sum, (f, t)| sum.plus(&f.times(t)))
         };
-        let torques: Vec<Function> = torque.iter().map(|r| sum_over_references(r)).collect();
+        let torques: Vec<RationalFunction> = torque.iter().map(|r| sum_over_references(r)).collect();
         // With one freedom every speed is a multiple of the reference's.
         let one = setup.base.len() == 1 && d == 1;
-        let speeds: Vec<Function> = (0..m)
+        let speeds: Vec<RationalFunction> = (0..m)
             .map(|t| match one {
-                true => self.speed[t][0].times(&Function::symbol(names.speed(setup.base[0]))),
-                false => Function::symbol(names.speed(t)),
+                true => self.speed[t][0].times(&RationalFunction::symbol(names.speed(setup.base[0]))),
+                false => RationalFunction::symbol(names.speed(t)),
             })
             .collect();
-        let unit = |f: &Function| -> Function {
+        let unit = |f: &RationalFunction| -> RationalFunction {
             // Torques and, with one freedom, speeds cancel; a unit in their place shows it.
             let torque_symbol = names.torque(self.reference[0]);
             let speed_symbol = names.speed(setup.base[0]);
-            let value =
-                |s: Symbol| ((d == 1 && s == torque_symbol) || (one && s == speed_symbol)).then_some(Function::ONE);
+            let value = |s: Symbol| {
+                ((d == 1 && s == torque_symbol) || (one && s == speed_symbol)).then_some(RationalFunction::ONE)
+            };
             f.substituted(&value).expect("units are no poles")
         };
         let power = |t: usize| torques[t].times(&speeds[t]);
-        let total = |sign: i8| (0..m).filter(|&t| roles[t] == sign).fold(Function::ZERO, |sum, t| sum.plus(&power(t)));
+        let total =
+            |sign: i8| (0..m).filter(|&t| roles[t] == sign).fold(RationalFunction::ZERO, |sum, t| sum.plus(&power(t)));
         let (input, output) = (total(1), total(-1));
-        let efficiency =
-            if output.is_zero() || input.is_zero() { Function::ZERO } else { unit(&output.negated().over(&input)) };
+        let efficiency = if output.is_zero() || input.is_zero() {
+            RationalFunction::ZERO
+        } else {
+            unit(&output.negated().over(&input))
+        };
 
         // What the link takes at one end and does not give at the other.
         let lost_on_the_way = through.and_then(|([a, b], forward)| {
             let (from, way) = if forward? { (a, 0) } else { (b, 1) };
-            let eta = Function::symbol(names.link?[way]);
-            Some(power(from).times(&Function::ONE.minus(&eta)).negated())
+            let eta = RationalFunction::symbol(names.link?[way]);
+            Some(power(from).times(&RationalFunction::ONE.minus(&eta)).negated())
         });
         let mut conditions: Vec<Condition> = Vec::new();
-        let sign = |f: Function, sign: i8| if sign > 0 { f } else { f.negated() };
+        let sign = |f: RationalFunction, sign: i8| if sign > 0 { f } else { f.negated() };
         // The powers of the reference are positive by the roles.
         let reference_sign = roles[self.reference[0]];
-        let normalised = |f: Function| if one { sign(unit(&f), reference_sign) } else { f };
-        let mut losses: Vec<(usize, Function, Function)> = Vec::new();
+        let normalised = |f: RationalFunction| if one { sign(unit(&f), reference_sign) } else { f };
+        let mut losses: Vec<(usize, RationalFunction, RationalFunction)> = Vec::new();
         for j in 0..k {
             let Some(p_drives) = pattern[j] else { continue };
             let e = setup.element(j);
@@ -821,9 +823,9 @@ impl<'s, 't> Shape<'s, 't> {
                 Some(hub) => behind.over(&names.rho(setup, pattern, hub)),
                 None => behind,
             };
-            let loss = potential.times(&Function::ONE.minus(&rho));
+            let loss = potential.times(&RationalFunction::ONE.minus(&rho));
             // The loss of a hub may stand in the efficiencies of its arms.
-            if rho != Function::ONE {
+            if rho != RationalFunction::ONE {
                 losses.push((
                     j,
                     self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()),
@@ -875,14 +877,14 @@ impl<'s, 't> Shape<'s, 't> {
             let own: Vec<usize> = (0..m).filter(|&t| roles[t] == sign).collect();
             if own.len() == 1 { Some(own[0]) } else { None }
         };
-        let shares = |t: usize| -> Vec<Function> {
+        let shares = |t: usize| -> Vec<RationalFunction> {
             let p = power(t);
             losses.iter().map(|(_, _, f)| spelt(&unit(&f.over(&p)))).collect()
         };
         let by_loss = match (lone(1), lone(-1)) {
             _ if one || setup.link.is_some() || losses.is_empty() || output.is_zero() => None,
             (Some(t), _) => Some((true, shares(t))),
-            (None, Some(t)) => Some((false, shares(t).iter().map(Function::negated).collect())),
+            (None, Some(t)) => Some((false, shares(t).iter().map(RationalFunction::negated).collect())),
             _ => None,
         };
         Formula {
@@ -891,8 +893,8 @@ impl<'s, 't> Shape<'s, 't> {
             torques: torques.iter().map(&spelt).collect(),
             speeds: (0..m)
                 .map(|t| {
-                    let own = (0..setup.base.len()).fold(Function::ZERO, |sum, b| {
-                        sum.plus(&self.speed[t][b].times(&Function::symbol(names.speed(setup.base[b]))))
+                    let own = (0..setup.base.len()).fold(RationalFunction::ZERO, |sum, b| {
+                        sum.plus(&self.speed[t][b].times(&RationalFunction::symbol(names.speed(setup.base[b]))))
                     });
                     spelt(&own)
                 })
@@ -907,7 +909,7 @@ impl<'s, 't> Shape<'s, 't> {
 impl Shape<'_, '_> {
     /// `(1 − η) T_driver (ω_driver − ω_c)`, where the driver is a terminal that only this element
     /// loads and the carrier's speed is a terminal's.
-    fn by_driver(&self, names: &Names, j: usize, p_drives: bool) -> Option<Function> {
+    fn by_driver(&self, names: &Names, j: usize, p_drives: bool) -> Option<RationalFunction> {
         let setup = self.setup;
         let e = setup.element(j);
         let driver = setup.c.node(if p_drives { e.p } else { e.q })?;
@@ -922,12 +924,12 @@ impl Shape<'_, '_> {
             return None;
         }
         let carrier = match setup.c.node(e.carrier) {
-            None => Function::ZERO,
-            Some(node) => Function::symbol(names.speed(terminal(node)?)),
+            None => RationalFunction::ZERO,
+            Some(node) => RationalFunction::symbol(names.speed(terminal(node)?)),
         };
-        let relative = Function::symbol(names.speed(t)).minus(&carrier);
-        let share = Function::ONE.minus(&Function::symbol(names.efficiency(j)));
-        Some(share.times(&Function::symbol(names.torque(t))).times(&relative))
+        let relative = RationalFunction::symbol(names.speed(t)).minus(&carrier);
+        let share = RationalFunction::ONE.minus(&RationalFunction::symbol(names.efficiency(j)));
+        Some(share.times(&RationalFunction::symbol(names.torque(t))).times(&relative))
     }
 }
 
@@ -955,12 +957,12 @@ impl Formula {
 
 /// A condition without what is positive anyway: efficiencies, tooth numbers and squares of what is
 /// not zero.
-fn bare(f: &Function, names: &Names) -> Function {
+fn bare(f: &RationalFunction, names: &Names) -> RationalFunction {
     let only = |p: &Polynomial, kinds: &[SymbolKind]| p.symbols().iter().all(|s| kinds.contains(&names.info(*s).kind));
     let positive =
         |p: &Polynomial| p.terms().all(|(c, _)| c.sign() > 0) && only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth]);
     let product_of_ratios = |p: &Polynomial| p.len() == 1 && only(p, &[SymbolKind::Ratio]);
-    let number = Function::from(Rational::from(i64::from(f.number().sign())));
+    let number = RationalFunction::from(Rational::from(i64::from(f.number().sign())));
     f.factors().iter().fold(number, |product, (p, e)| {
         let own = p.to_function();
         // A denominator has the sign of its product.
@@ -1030,16 +1032,16 @@ fn kinematic(setup: &Setup<'_>, j: usize, node: usize, i: &Polynomial) -> Polyno
 #[derive(Clone, Debug)]
 pub(crate) struct Formula {
     /// Output over input power; zero when all is dissipated.
-    pub efficiency: Function,
+    pub efficiency: RationalFunction,
     /// Loss of each element over the power of the only input (`true`: `η = 1 − Σ`) or of the only
     /// output (`false`: `η = 1/(1 + Σ)`).
-    pub by_loss: Option<(bool, Vec<Function>)>,
+    pub by_loss: Option<(bool, Vec<RationalFunction>)>,
     /// Terminal torques over the reference torques.
-    pub torques: Vec<Function>,
+    pub torques: Vec<RationalFunction>,
     /// Terminal speeds over the base speeds.
-    pub speeds: Vec<Function>,
+    pub speeds: Vec<RationalFunction>,
     /// Loss of each active element with a driver, and of the link.
-    pub losses: Vec<Function>,
+    pub losses: Vec<RationalFunction>,
     /// Positive throughout the regime, and only there.
     pub conditions: Vec<Condition>,
     pub names: Names,

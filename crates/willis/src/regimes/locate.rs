@@ -8,7 +8,7 @@ mod surroundings;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Named, Role, SolutionReport, StictionRange, operate_unnamed};
+use crate::analysis::{NameMap, Role, SolutionReport, StictionRange, operate_unnamed};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
@@ -25,7 +25,7 @@ use point::Point;
 use range::{speed_axes, speed_range, torque_range};
 use surroundings::Surroundings;
 
-pub use range::{Edge, Prescribes, Range};
+pub use range::{Edge, PrescribedRange, Prescribes};
 use request::Given;
 
 pub use request::LocateRequest;
@@ -42,7 +42,7 @@ pub struct Location {
     /// The state.
     pub state: String,
     /// Speeds by terminal, rad/s.
-    pub speeds_rad_s: Named<f64>,
+    pub speeds_rad_s: NameMap<f64>,
     /// The order of the speeds.
     pub order: Vec<String>,
     /// Planes on which the point lies exactly: on the boundary between regions.
@@ -72,13 +72,13 @@ pub struct Located {
     /// Name of the regime as `willis regimes` lists it, where that list was made.
     pub regime: Option<String>,
     /// Torques by terminal, N m.
-    pub torques_n_m: Named<f64>,
+    pub torques_n_m: NameMap<f64>,
     /// Powers into the train by terminal, W.
-    pub powers_w: Named<f64>,
+    pub powers_w: NameMap<f64>,
     /// What each terminal does.
-    pub roles: Named<Role>,
+    pub roles: NameMap<Role>,
     /// Which end drives each element.
-    pub drivers: Named<Option<String>>,
+    pub drivers: NameMap<Option<String>>,
     /// Output over input power; zero when all is dissipated.
     pub efficiency: f64,
     /// The same, exactly.
@@ -86,7 +86,7 @@ pub struct Located {
     /// The closed formula, where the train is small enough.
     pub formula: Option<String>,
     /// For each prescribed value the range within which the regime lasts, all others fixed.
-    pub ranges: Vec<Range>,
+    pub ranges: Vec<PrescribedRange>,
     /// Loaded meshes, or sets, without relative motion: their friction may be anything up to its limit.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub at_rest: Vec<String>,
@@ -194,7 +194,7 @@ fn located(point: &Point<'_>, around: &Surroundings, states: &[State]) -> Vec<Lo
                 prescribed.map_or(powers[t].to_f64() * point.power_unit, |(_, power)| *power)
             }),
             roles: setup.by_terminal(|t| role(signs[t])),
-            drivers: Named(drivers(setup, &s.pattern)),
+            drivers: NameMap(drivers(setup, &s.pattern)),
             efficiency: efficiency.to_f64(),
             efficiency_exact: efficiency,
             formula,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Named, Role};
+use crate::analysis::{NameMap, Role};
 use crate::contract::{Contract, Format};
 use crate::exact::Rational;
 
@@ -46,7 +46,7 @@ pub struct Atlas {
     /// Why there is nothing to list.
     pub reason: Option<String>,
     /// What the formulas' symbols stand for.
-    pub symbols: Named<SymbolReport>,
+    pub symbols: NameMap<SymbolReport>,
     /// The planes that cut the speed space.
     pub planes: Vec<PlaneReport>,
     /// The regions of speed, in order around the circle for two freedoms.
@@ -130,7 +130,7 @@ pub struct RegionReport {
     /// The side of each plane it lies on.
     pub signs: Vec<i8>,
     /// Speeds inside it, by terminal.
-    pub example: Named<f64>,
+    pub example: NameMap<f64>,
     /// Two freedoms: the two directions (in base speeds) that bound it, counterclockwise.
     pub from: Option<[f64; 2]>,
     /// See `from`.
@@ -189,16 +189,16 @@ pub struct RegimeReport {
     /// Number of the region of speeds.
     pub region: usize,
     /// Sign of each terminal's torque.
-    pub torque_signs: Named<i8>,
+    pub torque_signs: NameMap<i8>,
     /// What each terminal does.
-    pub roles: Named<Role>,
+    pub roles: NameMap<Role>,
     /// Terminals where power enters.
     pub inputs: Vec<String>,
     /// Terminals where power leaves.
     pub outputs: Vec<String>,
     /// Which end drives each element, seen from its carrier; absent when it carries no load or has
     /// no relative motion or loss.
-    pub drivers: Named<Option<String>>,
+    pub drivers: NameMap<Option<String>>,
     /// Name of its formula.
     pub formula: String,
     /// Efficiencies between which it lies: the limits on the two bounding directions (two
@@ -228,9 +228,9 @@ pub struct RegimeReport {
 #[non_exhaustive]
 pub struct ExamplePoint {
     /// Speeds by terminal, in any unit.
-    pub speeds: Named<f64>,
+    pub speeds: NameMap<f64>,
     /// Torques by terminal, in any unit.
-    pub torques: Named<f64>,
+    pub torques: NameMap<f64>,
     /// Efficiency there; zero when all is dissipated.
     pub efficiency: f64,
     /// The same, exactly.
@@ -268,7 +268,7 @@ pub struct FormulaReport {
     /// Power lost, as a sum over the elements that drive.
     pub loss: String,
     /// Torques of the terminals.
-    pub torques: Named<String>,
+    pub torques: NameMap<String>,
     /// Positive throughout the regimes, and nowhere else.
     pub conditions: Vec<ConditionReport>,
     /// Where basic ratios and efficiencies must lie for the torques to have these signs.
@@ -314,7 +314,7 @@ pub struct BoundaryReport {
     /// Direction, in base speeds.
     pub direction: [f64; 2],
     /// Speeds on it, by terminal.
-    pub speeds: Named<f64>,
+    pub speeds: NameMap<f64>,
     /// Regions on its two sides, counterclockwise.
     pub between: [usize; 2],
     /// What happens to each torque cell.

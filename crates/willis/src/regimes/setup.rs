@@ -3,7 +3,7 @@
 
 use crate::exact::{self, Matrix, Rational, null_space};
 use crate::kinematics::{Configuration, Element};
-use crate::named::Named;
+use crate::named::NameMap;
 use crate::statics::{self, Equilibrium, Unsolvable};
 use crate::train::{MachineEfficiency, MemberId, Store, VariatorPath};
 
@@ -279,7 +279,7 @@ impl<'t> Setup<'t> {
     }
 
     /// A value for each terminal, by its name.
-    pub fn by_terminal<T>(&self, value: impl Fn(usize) -> T) -> Named<T> {
+    pub fn by_terminal<T>(&self, value: impl Fn(usize) -> T) -> NameMap<T> {
         (0..self.terminals.len()).map(|t| (self.terminal_name(t).to_owned(), value(t))).collect()
     }
 

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
-use crate::model::{Model, Target, Who, quantity};
+use crate::model::{Model, ShaftRef, Target, quantity};
 use crate::train::Measure;
 use crate::units::{Dimension, Quantity, with_unit};
 
@@ -176,9 +176,9 @@ impl Axis {
     pub fn column(&self) -> String {
         let by_role = matches!(
             self.target,
-            Target::Speed(Who::Input | Who::Output)
-                | Target::Torque(Who::Input | Who::Output)
-                | Target::Power(Who::Input | Who::Output)
+            Target::Speed(ShaftRef::Input | ShaftRef::Output)
+                | Target::Torque(ShaftRef::Input | ShaftRef::Output)
+                | Target::Power(ShaftRef::Input | ShaftRef::Output)
         );
         let name = if by_role { self.name.replace('.', "_") } else { self.name.clone() };
         with_unit(&name, &self.unit)

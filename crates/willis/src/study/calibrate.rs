@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::assumptions;
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::model::{Model, Target, Who};
+use crate::model::{Model, ShaftRef, Target};
 use crate::train::csv::{self, Row};
 use crate::train::{LossPart, MemberId, Operation, Slot, Train};
 use crate::units::{self, Dimension};
@@ -19,7 +19,7 @@ use crate::work::{self, Effort, Work};
 
 use super::calibration::{Estimate, Evidence, FAR, deviation, estimate};
 use super::profile::Profile;
-use super::question::{Hold, Question, Trains};
+use super::question::{Hold, PointSetup, TrainCache};
 use super::sensitivity::loss_by;
 
 /// Factors stay within this of 1, both ways.
@@ -293,7 +293,7 @@ pub fn calibrate(model: &Model, request: &CalibrateRequest, work: &dyn Work) -> 
         return Err(d.hint("give teeth, oil, bearings or seals; given efficiencies are changed in the file").into());
     }
     let (profile, tests) = read(model, request)?;
-    let question = Question::new(model, request.operation.as_deref(), None, Hold::AsGiven)?;
+    let question = PointSetup::new(model, request.operation.as_deref(), None, Hold::AsGiven)?;
     let conditions = profile.conditions();
     work.afford(&Effort::of_points(train, (20 * conditions) as u64))?;
     let points = points(&question, &profile, &tests)?;
@@ -627,14 +627,14 @@ fn quoted(text: &str, separator: char) -> String {
 
 /// The operating point of each condition.
 fn points(
-    question: &Question<'_>,
+    question: &PointSetup<'_>,
     profile: &Profile,
     tests: &[Test],
 ) -> Result<Vec<(std::sync::Arc<Train>, Operation)>, Diagnostics> {
     let mut wrong = Diagnostics::default();
     let mut all = vec![];
     for condition in 0..profile.conditions() {
-        match question.at(&profile.settings(condition), &mut Trains::default()) {
+        match question.at(&profile.settings(condition), &mut TrainCache::default()) {
             Ok((train, operation)) => all.push((train, operation)),
             Err(more) => {
                 let line = tests.iter().find(|t| t.condition as usize == condition).map_or(0, |t| t.line);
@@ -767,7 +767,7 @@ fn name_of(profile: &Profile, test: &Test, target: &Target) -> String {
 
 /// The losses of the file's operations with their derivatives.
 fn predictions(
-    question: &Question<'_>,
+    question: &PointSetup<'_>,
     train: &Train,
     free: &[LossPart],
     found: &Estimate,
@@ -789,7 +789,7 @@ fn predictions(
                 let member = question.role(train, operation, *who).ok()?;
                 let load = operation.loads.iter().find(|l| l.0 == member)?;
                 match &load.1 {
-                    crate::train::Load::Torque(q) if matches!(who, Who::Output) => Some(-q.si()),
+                    crate::train::Load::Torque(q) if matches!(who, ShaftRef::Output) => Some(-q.si()),
                     crate::train::Load::Torque(q) => Some(q.si()),
                     crate::train::Load::Power(_) => None,
                 }
@@ -817,7 +817,7 @@ fn predictions(
 
 /// The corners of what was tested, and no load, ranked by what they would teach.
 fn next(
-    question: &Question<'_>,
+    question: &PointSetup<'_>,
     profile: &Profile,
     tests: &[Test],
     found: &Estimate,
@@ -859,7 +859,7 @@ fn next(
             settings.push((target, format!("{value} {unit}")));
             said.push(format!("{name} = {shown}"));
         }
-        let Ok((train, operation)) = question.at(&settings, &mut Trains::default()) else { continue };
+        let Ok((train, operation)) = question.at(&settings, &mut TrainCache::default()) else { continue };
         let Ok(Some((loss, by))) = loss_at(&train, &operation, free, &found.z) else { continue };
         // It would be measured as well as the test that lost about as much.
         let apart = |t: &Test| (t.loss - loss).abs();

@@ -7,16 +7,18 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::compiled::{CompiledTrain, Duty, GridInputs, Output, OutputSummary, Points, Workspace};
+use crate::compiled::{
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, Workspace,
+};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
-use crate::model::{Target, Who};
+use crate::model::{ShaftRef, Target};
 use crate::train::{Load, MemberId};
 use crate::units::{self, Dimension};
 
 use super::answer::{PointAnswer, PointVerdict};
 use super::column::{Column, ColumnValues, Rows};
-use super::question::{Hold, Trains};
+use super::question::{Hold, TrainCache};
 use super::summary::{AxisValue, MinMaxSum, Summary};
 use super::sweep::{Sweep, What};
 
@@ -141,7 +143,7 @@ pub struct CompiledSweep<'s> {
 /// Work arrays; one for each thread.
 #[derive(Debug, Default)]
 pub struct SweepWorkspace {
-    pub(super) trains: Trains,
+    pub(super) trains: TrainCache,
     work: Vec<Option<Workspace>>,
     inputs: Vec<Vec<f64>>,
     outputs: Vec<Vec<f64>>,
@@ -161,7 +163,7 @@ impl<'s> Sweep<'s> {
     /// # Example
     /// ```
     /// use willis::model::Model;
-    /// use willis::study::{Axis, Hold, PointVerdict, Question, Sweep};
+    /// use willis::study::{Axis, Hold, PointSetup, PointVerdict, Sweep};
     ///
     /// let text = r#"
     ///     format = 1
@@ -178,7 +180,7 @@ impl<'s> Sweep<'s> {
     /// let model = Model::from_toml(text).unwrap();
     /// let axes = ["input.speed=1 rpm..2000 rpm:2000", "input.torque=1 N m..100 N m:500"];
     /// let axes = axes.iter().map(|a| Axis::parse(a, &model)).collect::<Result<_, _>>()?;
-    /// let sweep = Sweep::new(Question::new(&model, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
+    /// let sweep = Sweep::new(PointSetup::new(&model, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
     /// let map = sweep.compile().unwrap().summary(0, sweep.len(), &mut Default::default());
     /// assert_eq!(map.verdicts[&PointVerdict::Unique], 1_000_000);
     /// assert!((map.efficiency.least.unwrap().value - 0.98607).abs() < 1e-9);
@@ -190,16 +192,16 @@ impl<'s> Sweep<'s> {
 
     /// Columns of a compiled sweep, the outputs they need, and which column takes which.
     #[expect(clippy::type_complexity, reason = "three parallel lists, taken apart at once")]
-    fn compiled_columns(&self) -> Result<(Vec<(Column, What)>, Vec<Output>, Vec<Option<usize>>), Diagnostics> {
-        let mut outputs = vec![Output::Efficiency, Output::Loss];
+    fn compiled_columns(&self) -> Result<(Vec<(Column, What)>, Vec<CompiledOutput>, Vec<Option<usize>>), Diagnostics> {
+        let mut outputs = vec![CompiledOutput::Efficiency, CompiledOutput::Loss];
         let (mut columns, mut output) = (vec![], vec![]);
         for (column, what) in &self.columns {
             let wanted = match what {
-                What::Efficiency => Some(Output::Efficiency),
-                What::Loss => Some(Output::Loss),
-                What::Speed(m) => Some(Output::Speed(m.clone())),
-                What::Torque(m) => Some(Output::Torque(m.clone())),
-                What::ElementTorque(e) => Some(Output::ShiftElementTorque(e.clone())),
+                What::Efficiency => Some(CompiledOutput::Efficiency),
+                What::Loss => Some(CompiledOutput::Loss),
+                What::Speed(m) => Some(CompiledOutput::Speed(m.clone())),
+                What::Torque(m) => Some(CompiledOutput::Torque(m.clone())),
+                What::ElementTorque(e) => Some(CompiledOutput::ShiftElementTorque(e.clone())),
                 What::Axis(_) | What::Verdict | What::Best | What::Reason => None,
                 // Not of every point at little cost; the long way has them.
                 What::InputPower | What::OutputPower | What::LossOf(_) | What::Warnings => continue,
@@ -223,8 +225,8 @@ impl<'s> Sweep<'s> {
         &self,
         case: usize,
         choosing: &[(usize, usize)],
-        outputs: &[Output],
-        trains: &mut Trains,
+        outputs: &[CompiledOutput],
+        trains: &mut TrainCache,
     ) -> Result<Case, Diagnostics> {
         let value =
             |k: usize| choosing.iter().find(|c| c.0 == k).map_or(0, |&(k, step)| case / step % self.axes[k].len());
@@ -240,7 +242,7 @@ impl<'s> Sweep<'s> {
             };
             units::parse(&format!("1 {}", axis.unit), dimension).map_or(f64::NAN, |q| q.si())
         };
-        let axis_of = |member: MemberId, speed: bool| -> Result<Option<(usize, Who)>, Diagnostics> {
+        let axis_of = |member: MemberId, speed: bool| -> Result<Option<(usize, ShaftRef)>, Diagnostics> {
             for (k, axis) in self.axes.iter().enumerate() {
                 let who = match axis.target {
                     Target::Speed(who) if speed => who,
@@ -273,9 +275,9 @@ impl<'s> Sweep<'s> {
             };
             torques.push(match axis_of(*member, false)? {
                 None => Input::Constant(q.si()),
-                Some((k, Who::Member(_))) => Input::Axis(Values::new(self, k, si(k), Dimension::TORQUE)),
+                Some((k, ShaftRef::Member(_))) => Input::Axis(Values::new(self, k, si(k), Dimension::TORQUE)),
                 Some((k, who)) => {
-                    let sign = if who == Who::Input { 1.0 } else { -1.0 };
+                    let sign = if who == ShaftRef::Input { 1.0 } else { -1.0 };
                     let follows = transfer.speeds[member.0].as_ref().map(|f| f.iter().map(|x| x.to_f64()).collect());
                     Input::Role(Values::new(self, k, sign * si(k), Dimension::TORQUE), follows.unwrap_or_default())
                 }
@@ -284,7 +286,7 @@ impl<'s> Sweep<'s> {
         let name = |m: &MemberId| train.member_name(*m).to_owned();
         let names: (Vec<String>, Vec<String>) =
             (prescribed.iter().map(name).collect(), operation.loads.iter().map(|l| name(&l.0)).collect());
-        let mut duty = Duty::new(names.0.iter().map(String::as_str), names.1.iter().map(String::as_str));
+        let mut duty = CompileRequest::new(names.0.iter().map(String::as_str), names.1.iter().map(String::as_str));
         if let Some(k) = operation.state {
             duty = duty.state(&train.states[k].name);
         }
@@ -346,7 +348,7 @@ impl<'s> CompiledSweep<'s> {
             return Err(refuse(&message, with_hold));
         }
         let (columns, outputs, output) = sweep.compiled_columns()?;
-        let mut trains = Trains::default();
+        let mut trains = TrainCache::default();
         let cases = (0..count).map(|case| sweep.case(case, &choosing, &outputs, &mut trains));
         let cases = cases.collect::<Result<Vec<_>, _>>()?;
         Ok(Self { sweep: Arc::clone(&sweep), cases, choosing, columns, output, arch: pulp::Arch::new() })
@@ -394,7 +396,7 @@ impl<'s> CompiledSweep<'s> {
         let speeds: Vec<&[f64]> = speeds.iter().map(Vec::as_slice).collect();
         let torques: Vec<&[f64]> = torques.iter().map(Vec::as_slice).collect();
         let mut outputs: Vec<&mut [f64]> = room.outputs.iter_mut().map(Vec::as_mut_slice).collect();
-        own.train.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, work, &mut outputs)
+        own.train.evaluate_batch(&BatchInputs { speeds: &speeds, torques: &torques }, work, &mut outputs)
     }
 
     /// What the points from `from` up to `to` say together; no row is made.

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::{self, Losses, SolutionReport};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::model::{Model, Target, Who};
-use crate::named::Named;
+use crate::model::{Model, ShaftRef, Target};
+use crate::named::NameMap;
 use crate::operating_point::LossKind;
 use crate::train::{Load, Operation, Train};
 use crate::work::{self, Effort, Work};
@@ -19,7 +19,7 @@ use super::answer::{PointAnswer, PointVerdict};
 use super::column::{Column, ColumnTable, ColumnValues};
 use super::heat;
 use super::profile::{Basis, Held, Profile, ProfileColumns, ProfileRow};
-use super::question::{Hold, Question, Trains};
+use super::question::{Hold, PointSetup, TrainCache};
 
 /// How many of the worst are told.
 const MOST_WORST: usize = 5;
@@ -214,9 +214,10 @@ impl From<LossKind> for EnergyKind {
 
 /// Energy lost by a source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+// The schema keeps the name that is published.
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "SourceEnergy"))]
 #[non_exhaustive]
-pub struct SourceEnergy {
+pub struct LossBySource {
     /// What loses it; a mesh where losses are given by efficiencies.
     pub name: String,
     /// What kind of loss it is.
@@ -354,21 +355,21 @@ pub struct CycleReport {
     /// Mean loss power over the covered time, W.
     pub mean_loss_w: Option<f64>,
     /// Energy lost by kind, J.
-    pub losses_j: Named<f64>,
+    pub losses_j: NameMap<f64>,
     /// Energy lost by source, largest first.
-    pub sources: Vec<SourceEnergy>,
+    pub sources: Vec<LossBySource>,
     /// By which way power goes.
-    pub ways: Named<Energies>,
+    pub ways: NameMap<Energies>,
     /// By state of the shift table.
-    pub states: Named<Energies>,
+    pub states: NameMap<Energies>,
     /// By terminal through which power passes.
-    pub terminals: Named<TerminalEnergy>,
+    pub terminals: NameMap<TerminalEnergy>,
     /// By verdict, with the reasons of those without an answer.
-    pub verdicts: Named<VerdictTime>,
+    pub verdicts: NameMap<VerdictTime>,
     /// The worst rows.
     pub worst: Worst,
     /// Warnings by their code.
-    pub warnings: Named<Vec<RepeatedMessage>>,
+    pub warnings: NameMap<Vec<RepeatedMessage>>,
     /// What is remarkable about the profile.
     pub notes: Vec<String>,
     /// The oil temperature, where it follows from the losses.
@@ -386,7 +387,7 @@ impl Contract for CycleReport {
 /// A profile put to a train.
 #[derive(Clone, Debug)]
 pub struct Cycle<'a> {
-    question: Question<'a>,
+    question: PointSetup<'a>,
     profile: &'a Profile,
 }
 
@@ -464,7 +465,7 @@ pub fn cycle(model: &Model, request: &CycleRequest, work: &dyn Work) -> Result<C
         }
     };
     let profile = Profile::parse_columns(&request.profile, model, &columns)?;
-    let mut question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+    let mut question = PointSetup::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
     let oil = oil_of(&question, &profile, work)?;
     if let Some(CycleOil { mean_k: Some(t), .. }) = oil {
         question.warm(t);
@@ -476,7 +477,7 @@ pub fn cycle(model: &Model, request: &CycleRequest, work: &dyn Work) -> Result<C
 
 /// The oil temperature of a cycle, where the train says what carries heat away and neither operation nor profile gives
 /// it.
-fn oil_of(question: &Question<'_>, profile: &Profile, work: &dyn Work) -> Result<Option<CycleOil>, Diagnostics> {
+fn oil_of(question: &PointSetup<'_>, profile: &Profile, work: &dyn Work) -> Result<Option<CycleOil>, Diagnostics> {
     let train = question.model().train();
     let given = profile.conditions() > 0 && profile.settings(0).iter().any(|s| *s.0 == Target::Temperature);
     let Some(network) = train.heat().filter(|_| !given && question.base().temperature.is_none()) else {
@@ -524,7 +525,7 @@ impl<'a> Cycle<'a> {
     const AT_ONCE: usize = 64;
 
     /// The rows of a profile as questions.
-    pub fn new(question: Question<'a>, profile: &'a Profile) -> Self {
+    pub fn new(question: PointSetup<'a>, profile: &'a Profile) -> Self {
         Self { question, profile }
     }
 
@@ -544,7 +545,7 @@ impl<'a> Cycle<'a> {
         let parts = work::map(work, n.div_ceil(Self::AT_ONCE), |k| {
             let conditions = k * Self::AT_ONCE..((k + 1) * Self::AT_ONCE).min(n);
             let count = conditions.len() as u64;
-            let part = self.part(conditions, &mut Trains::default());
+            let part = self.part(conditions, &mut TrainCache::default());
             work.advance(count);
             part
         })?;
@@ -591,7 +592,7 @@ impl<'a> Cycle<'a> {
     }
 
     /// The answers for some conditions.
-    fn part(&self, conditions: Range<usize>, trains: &mut Trains) -> CyclePart {
+    fn part(&self, conditions: Range<usize>, trains: &mut TrainCache) -> CyclePart {
         let mut part = CyclePart::default();
         for condition in conditions {
             let point = self.point(condition, trains, &mut part);
@@ -600,7 +601,7 @@ impl<'a> Cycle<'a> {
         part
     }
 
-    fn point(&self, condition: usize, trains: &mut Trains, part: &mut CyclePart) -> CyclePoint {
+    fn point(&self, condition: usize, trains: &mut TrainCache, part: &mut CyclePart) -> CyclePoint {
         let held = self.profile.held(condition);
         let settings = self.profile.settings(condition);
         let states = self.question.model().train().states();
@@ -672,7 +673,7 @@ impl<'a> Cycle<'a> {
             let member = self.question.role(train, operation, who).ok()?;
             s.members.get(train.member_name(member))?.power_w
         };
-        match (power(Who::Input), power(Who::Output)) {
+        match (power(ShaftRef::Input), power(ShaftRef::Output)) {
             (Some(i), Some(o)) if i > least && o < -least => PowerDirection::Driving,
             (Some(i), Some(o)) if i < -least && o > least => PowerDirection::Coasting,
             _ => PowerDirection::Other,
@@ -682,7 +683,7 @@ impl<'a> Cycle<'a> {
     /// What the operation prescribes and the profile does not set.
     fn base(&self) -> Vec<String> {
         let settings = self.profile.settings(0);
-        let Ok((train, operation)) = self.question.at(&settings, &mut Trains::default()) else { return vec![] };
+        let Ok((train, operation)) = self.question.at(&settings, &mut TrainCache::default()) else { return vec![] };
         let set = |member, is_speed: bool| {
             settings.iter().any(|(target, _)| {
                 let who = match target {
@@ -763,11 +764,11 @@ impl<'a> Cycle<'a> {
                 join(warnings.entry(*code).or_default(), all);
             }
         }
-        let mut sources: Vec<SourceEnergy> = sources
+        let mut sources: Vec<LossBySource> = sources
             .into_iter()
             .map(|((name, kind), (law, energy_j))| {
                 let share = if whole.energy_lost_j > 0.0 { energy_j / whole.energy_lost_j } else { 0.0 };
-                SourceEnergy { name: name.clone(), kind: *kind, law: law.clone(), energy_j, share }
+                LossBySource { name: name.clone(), kind: *kind, law: law.clone(), energy_j, share }
             })
             .collect();
         sources.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));

@@ -33,7 +33,7 @@ use super::axis::values;
 
 pub use carried::NotCarried;
 use carried::{left_out, sentence};
-pub use map::{Answer, Gear, Map, Point};
+pub use map::{Gear, Map, MapAnswer, Point};
 
 /// What an export is asked.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

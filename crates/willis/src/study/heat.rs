@@ -15,7 +15,7 @@ use crate::train::{Load, Operation, Store, Train};
 use crate::work::{self, Effort, Work};
 
 use super::profile::{Basis, Profile};
-use super::question::{Hold, Question, Trains};
+use super::question::{Hold, PointSetup, TrainCache};
 
 /// Rows of a warm-up.
 const ROWS: usize = 120;
@@ -583,13 +583,13 @@ pub(super) fn of_profile(
         let message = "the profile gives the oil temperature, and a duty cycle finds it";
         return Err(Diagnostic::new(Code::Conflict, "", message).hint("leave that column out").into());
     }
-    let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+    let question = PointSetup::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
     of_rows(&question, &profile, network, work)
 }
 
 /// The same for a profile that was read.
 pub(super) fn of_rows(
-    question: &Question<'_>,
+    question: &PointSetup<'_>,
     profile: &Profile,
     network: &Heat,
     work: &dyn Work,
@@ -610,7 +610,7 @@ pub(super) fn of_rows(
     let from = network.coldest(network.start);
     let tables = work::map(work, n, |k| {
         let settings = profile.settings(k);
-        let asked = question.at(&settings, &mut Trains::default());
+        let asked = question.at(&settings, &mut TrainCache::default());
         let table = asked.ok().and_then(|(own, mut operation)| {
             operation.temperature = None;
             Tabulated::of(&HeatOfLosses::new(&own, network, &operation), from, network.limit, nodes).ok()

@@ -660,7 +660,7 @@ impl Profile {
         self.settings.iter().zip(values).map(|(s, v)| s.values[*v as usize].as_str())
     }
 
-    /// What a condition sets, for [`Question::at`](super::Question::at).
+    /// What a condition sets, for [`PointSetup::at`](super::PointSetup::at).
     pub fn settings(&self, condition: usize) -> Vec<(&Target, String)> {
         let value = |s: &Setting, v: &str| if s.unit.is_empty() { v.to_owned() } else { format!("{v} {}", s.unit) };
         self.settings.iter().zip(self.cells(condition)).map(|(s, v)| (&s.target, value(s, v))).collect()

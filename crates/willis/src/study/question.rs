@@ -9,7 +9,7 @@ use crate::analysis;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Transfer, common};
-use crate::model::{Model, Target, Who, oil_temperature, quantity};
+use crate::model::{Model, ShaftRef, Target, oil_temperature, quantity};
 use crate::train::{Document, Load, MemberId, Operation, Store, Train};
 use crate::units::{Dimension, Quantity};
 use crate::work::Effort;
@@ -58,7 +58,7 @@ const MOST_TRAINS: usize = 64;
 
 /// The operating point from which a study starts, and what is held.
 #[derive(Clone, Debug)]
-pub struct Question<'s> {
+pub struct PointSetup<'s> {
     model: &'s Model,
     base: Operation,
     hold: Hold,
@@ -70,7 +70,7 @@ pub struct Question<'s> {
 
 /// Trains that differ in quantities of their file, kept for the next point.
 #[derive(Debug, Default)]
-pub struct Trains {
+pub struct TrainCache {
     known: HashMap<Settings, Result<Arc<Train>, Diagnostics>>,
     /// How the speeds of a train follow from those that are prescribed, for the last such question.
     transfer: Option<(Tied, Transfer)>,
@@ -96,7 +96,7 @@ impl Tied {
     }
 }
 
-impl Trains {
+impl TrainCache {
     /// A value with a unit.
     fn quantity(&mut self, text: &str, dimension: Dimension) -> Result<Quantity, Diagnostics> {
         if let Some((_, known)) = self.read.get(text).filter(|(of, _)| *of == dimension) {
@@ -152,7 +152,7 @@ fn refuse(code: Code, message: String, hint: &str) -> Diagnostics {
     Diagnostics::from_iter([if hint.is_empty() { d } else { d.hint(hint) }])
 }
 
-impl<'s> Question<'s> {
+impl<'s> PointSetup<'s> {
     /// The operation of that name, else the first of the state that is named, else the file's first (in that state), else
     /// an operating point in which nothing is prescribed yet.
     ///
@@ -234,7 +234,7 @@ impl<'s> Question<'s> {
             };
         }
         if self.hold == Hold::Output {
-            let output = self.role(train, &self.base, Who::Output)?;
+            let output = self.role(train, &self.base, ShaftRef::Output)?;
             let (report, _) = analysis::operate(train, &self.base)?;
             let name = train.member_name(output);
             let torque = match &report.solutions[..] {
@@ -290,12 +290,12 @@ impl<'s> Question<'s> {
         Ok(())
     }
 
-    pub(super) fn role(&self, train: &Train, operation: &Operation, who: Who) -> Result<MemberId, Diagnostics> {
+    pub(super) fn role(&self, train: &Train, operation: &Operation, who: ShaftRef) -> Result<MemberId, Diagnostics> {
         let [input, output] = train.ends(operation.state);
         let (found, what) = match who {
-            Who::Member(m) => return Ok(m),
-            Who::Input => (input, "input"),
-            Who::Output => (output, "output"),
+            ShaftRef::Member(m) => return Ok(m),
+            ShaftRef::Input => (input, "input"),
+            ShaftRef::Output => (output, "output"),
         };
         found.ok_or_else(|| {
             let hint = "name two `terminals`, or `input` and `output`; or call the member by its name";
@@ -310,14 +310,14 @@ impl<'s> Question<'s> {
     pub fn at(
         &self,
         settings: &[(&Target, String)],
-        trains: &mut Trains,
+        trains: &mut TrainCache,
     ) -> Result<(Arc<Train>, Operation), Diagnostics> {
         let train = self.train(settings, trains)?;
         let operation = self.operation(&train, settings, trains)?;
         Ok((train, operation))
     }
 
-    fn train(&self, settings: &[(&Target, String)], trains: &mut Trains) -> Result<Arc<Train>, Diagnostics> {
+    fn train(&self, settings: &[(&Target, String)], trains: &mut TrainCache) -> Result<Arc<Train>, Diagnostics> {
         let of_train: Vec<(&Target, String)> =
             settings.iter().filter(|s| s.0.is_of_train()).map(|(t, v)| (*t, v.clone())).collect();
         let key: Settings = of_train.iter().map(|(t, v)| ((*t).clone(), v.clone())).collect();
@@ -342,7 +342,7 @@ impl<'s> Question<'s> {
         &self,
         train: &Arc<Train>,
         settings: &[(&Target, String)],
-        trains: &mut Trains,
+        trains: &mut TrainCache,
     ) -> Result<Operation, Diagnostics> {
         let mut operation = self.base.clone();
         let wrong = |message: String| refuse(Code::BadAxis, message, "");
@@ -392,24 +392,24 @@ impl<'s> Question<'s> {
             loads.push((member, *who, load));
         }
         if let Some(held) = &self.output {
-            let member = self.role(train, &operation, Who::Output)?;
+            let member = self.role(train, &operation, ShaftRef::Output)?;
             if !loads.iter().any(|l| l.0 == member) {
-                loads.push((member, Who::Output, Load::Torque(held.clone())));
+                loads.push((member, ShaftRef::Output, Load::Torque(held.clone())));
             }
         }
         if loads.is_empty() {
             return Ok(operation);
         }
         let new = loads.into_iter().map(|(member, who, load)| {
-            let with_role = matches!((who, &load), (Who::Input | Who::Output, Load::Torque(_)));
+            let with_role = matches!((who, &load), (ShaftRef::Input | ShaftRef::Output, Load::Torque(_)));
             let backwards = with_role && trains.turns_backwards(train, &operation, member);
             // Power of the load is positive into the train.
             let turn = match (&load, who) {
-                (_, Who::Member(_)) => false,
-                (Load::Torque(_), Who::Input) => backwards,
-                (Load::Torque(_), Who::Output) => !backwards,
-                (Load::Power(_), Who::Input) => false,
-                (Load::Power(_), Who::Output) => true,
+                (_, ShaftRef::Member(_)) => false,
+                (Load::Torque(_), ShaftRef::Input) => backwards,
+                (Load::Torque(_), ShaftRef::Output) => !backwards,
+                (Load::Power(_), ShaftRef::Input) => false,
+                (Load::Power(_), ShaftRef::Output) => true,
             };
             let sign = |q: Quantity| if turn { Quantity { value: -q.value, ..q } } else { q };
             let load = match load {
@@ -423,10 +423,11 @@ impl<'s> Question<'s> {
     }
 }
 
-impl Question<'_> {
+impl PointSetup<'_> {
     /// Lets the output turn so that the input, which turns as it did, is `ratio` times as fast.
     fn at_ratio(&self, train: &Train, operation: &mut Operation, ratio: &Rational) -> Result<(), Diagnostics> {
-        let [input, output] = [self.role(train, operation, Who::Input)?, self.role(train, operation, Who::Output)?];
+        let [input, output] =
+            [self.role(train, operation, ShaftRef::Input)?, self.role(train, operation, ShaftRef::Output)?];
         let name = |m: MemberId| train.member_name(m);
         let Some(speed) = speeds(train, operation)(input).filter(|w| !w.value.is_zero()) else {
             let message =

@@ -13,7 +13,7 @@ use crate::train::{Operation, Train};
 use super::answer::{PointAnswer, PointAnswers, PointWarning};
 use super::axis::Axis;
 use super::column::{Column, Rows};
-use super::question::{Hold, Question, Trains};
+use super::question::{Hold, PointSetup, TrainCache};
 use super::summary::{AxisValue, Summary};
 
 pub(super) use columns::What;
@@ -28,7 +28,7 @@ pub use report::{Shard, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepRe
 /// # Example
 /// ```
 /// use willis::model::Model;
-/// use willis::study::{Axis, Hold, PointVerdict, Question, Sweep};
+/// use willis::study::{Axis, Hold, PointSetup, PointVerdict, Sweep};
 ///
 /// let text = r#"
 ///     format = 1
@@ -45,7 +45,7 @@ pub use report::{Shard, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepRe
 /// let model = Model::from_toml(text).unwrap();
 /// let axis = |text: &str| Axis::parse(text, &model);
 /// let axes = vec![axis("input.speed=1000 rpm..2000 rpm:3")?, axis("output.torque=-10 N m, 10 N m")?];
-/// let question = Question::new(&model, None, None, Hold::AsGiven).unwrap();
+/// let question = PointSetup::new(&model, None, None, Hold::AsGiven).unwrap();
 /// let sweep = Sweep::new(question, axes, &[]).unwrap();
 /// assert_eq!(sweep.len(), 6);
 /// let rows = sweep.rows(0, 6, &mut Default::default());
@@ -56,7 +56,7 @@ pub use report::{Shard, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepRe
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sweep<'s> {
-    pub(super) question: Question<'s>,
+    pub(super) question: PointSetup<'s>,
     pub(super) axes: Vec<Axis>,
     pub(super) columns: Vec<(Column, What)>,
     points: u64,
@@ -69,7 +69,7 @@ impl<'s> Sweep<'s> {
     /// # Errors
     /// An axis twice, no axis, more points than can be numbered, columns that there are not; a sweep whose first point
     /// cannot be asked because it is open what an axis replaces.
-    pub fn new(question: Question<'s>, mut axes: Vec<Axis>, columns: &[String]) -> Result<Self, Diagnostics> {
+    pub fn new(question: PointSetup<'s>, mut axes: Vec<Axis>, columns: &[String]) -> Result<Self, Diagnostics> {
         let mut wrong = Diagnostics::default();
         if axes.is_empty() {
             let d = Diagnostic::new(Code::BadAxis, "", "nothing varies");
@@ -125,7 +125,7 @@ impl<'s> Sweep<'s> {
             what.into_iter().map(move |d| Diagnostic { place: format!("study[{k}].{key}"), ..d }).collect::<Vec<_>>()
         };
         let hold = study.hold.as_deref().and_then(Hold::named).unwrap_or_default();
-        match Question::new(model, study.operation.as_deref(), study.state.as_deref(), hold) {
+        match PointSetup::new(model, study.operation.as_deref(), study.state.as_deref(), hold) {
             Ok(question) if !wrong.has_errors() => {
                 Self::new(question, axes, &study.columns).map_err(|w| at(w, "over").into_iter().collect())
             }
@@ -153,7 +153,7 @@ impl<'s> Sweep<'s> {
     }
 
     /// What is asked.
-    pub fn question(&self) -> &Question<'s> {
+    pub fn question(&self) -> &PointSetup<'s> {
         &self.question
     }
 
@@ -193,7 +193,7 @@ impl<'s> Sweep<'s> {
     }
 
     /// The answer at a point.
-    pub fn answer(&self, point: u64, trains: &mut Trains) -> PointAnswer {
+    pub fn answer(&self, point: u64, trains: &mut TrainCache) -> PointAnswer {
         let mut found = None;
         PointAnswers::each([self.ask(point, trains)], true, |answer, asked| {
             found = Some(self.completed(answer, asked))
@@ -219,8 +219,8 @@ impl<'s> Sweep<'s> {
     /// The train and the operating point at a point.
     ///
     /// # Errors
-    /// See [`Question::at`].
-    pub fn ask(&self, point: u64, trains: &mut Trains) -> Result<(Arc<Train>, Operation), Diagnostics> {
+    /// See [`PointSetup::at`].
+    pub fn ask(&self, point: u64, trains: &mut TrainCache) -> Result<(Arc<Train>, Operation), Diagnostics> {
         let place = self.place(point);
         let settings: Vec<(&Target, String)> =
             self.axes.iter().zip(&place).map(|(a, k)| (&a.target, a.setting(*k))).collect();
@@ -228,7 +228,7 @@ impl<'s> Sweep<'s> {
     }
 
     /// The rows of the points from `from` up to `to`, whole [groups](Self::group).
-    pub fn rows(&self, from: u64, to: u64, trains: &mut Trains) -> Rows {
+    pub fn rows(&self, from: u64, to: u64, trains: &mut TrainCache) -> Rows {
         let n = (to - from) as usize;
         let mut rows = Rows::with_capacity(self.columns(), n);
         let group = self.group();

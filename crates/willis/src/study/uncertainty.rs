@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::model::{Model, Target, Who};
+use crate::model::{Model, ShaftRef, Target};
 use crate::train::{Load, Measure, Operation, Store, Train, VariatorPath};
 use crate::units::{self, Quantity, with_unit};
 use crate::work::{self, Cancelled, Effort, Work};
@@ -19,7 +19,7 @@ use super::answer::{LawChoice, PointAnswer, PointVerdict};
 use super::column::{Column, ColumnTable};
 use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain, rounded};
-use super::question::{Hold, Question, Trains, speeds};
+use super::question::{Hold, PointSetup, TrainCache, speeds};
 use super::summary::{self, Seen, WarningKind};
 use super::{Axis, Statistics};
 
@@ -221,7 +221,7 @@ pub fn uncertainty(
 /// ```
 #[derive(Clone, Debug)]
 pub struct UncertaintyPlan<'s> {
-    question: Question<'s>,
+    question: PointSetup<'s>,
     quantities: Vec<Uncertain>,
     design: Design,
     assumptions: Vec<String>,
@@ -286,7 +286,7 @@ impl<'s> UncertaintyPlan<'s> {
     /// refused with every quantity at the middle of its distribution.
     pub fn new(model: &'s Model, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
         let mut wrong = Diagnostics::default();
-        let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+        let question = PointSetup::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
         if question.base().loads.is_empty() {
             let message = match &request.state {
                 Some(state) => {
@@ -391,7 +391,7 @@ impl<'s> UncertaintyPlan<'s> {
     /// The middle must be possible; ends that are not are told.
     fn check(&mut self) -> Result<(), Diagnostics> {
         let middle: Vec<f64> = vec![0.5; self.quantities.len()];
-        let ask = |p: &[f64]| self.question.at(&self.settings_at(p), &mut Trains::default()).map(drop);
+        let ask = |p: &[f64]| self.question.at(&self.settings_at(p), &mut TrainCache::default()).map(drop);
         ask(&middle).map_err(|wrong| {
             let hint = "so it is with every quantity at the middle of its distribution";
             let told = wrong.into_iter().map(|d| d.hint(hint));
@@ -456,7 +456,7 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     /// What is asked.
-    pub fn question(&self) -> &Question<'s> {
+    pub fn question(&self) -> &PointSetup<'s> {
         &self.question
     }
 
@@ -470,7 +470,7 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     /// The answer at a point.
-    pub fn answer(&self, point: usize, trains: &mut Trains) -> PointAnswer {
+    pub fn answer(&self, point: usize, trains: &mut TrainCache) -> PointAnswer {
         match self.question.at(&self.settings_at(&self.design.at(point)), trains) {
             Ok((train, operation)) => PointAnswer::of(&train, &operation),
             Err(wrong) => PointAnswer::refused(wrong),
@@ -479,7 +479,7 @@ impl<'s> UncertaintyPlan<'s> {
 
     /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
     /// takes the axis' value.
-    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> PointAnswer {
+    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut TrainCache) -> PointAnswer {
         match self.asked_along(point, axis, k, trains) {
             Ok((train, operation)) => PointAnswer::of(&train, &operation),
             Err(wrong) => PointAnswer::refused(wrong),
@@ -495,7 +495,7 @@ impl<'s> UncertaintyPlan<'s> {
         point: Option<usize>,
         axis: &Axis,
         k: usize,
-        trains: &mut Trains,
+        trains: &mut TrainCache,
     ) -> Result<(Arc<Train>, Operation), Diagnostics> {
         let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
         settings.retain(|s| *s.0 != axis.target);
@@ -523,7 +523,7 @@ impl<'s> UncertaintyPlan<'s> {
         let parts = work::map(work, points.len().div_ceil(piece), |k| {
             let from = points.start + k * piece;
             let own = from..(from + piece).min(points.end);
-            let part = self.evaluate(own.clone(), &mut Trains::default());
+            let part = self.evaluate(own.clone(), &mut TrainCache::default());
             work.advance(own.len() as u64);
             part
         })?;
@@ -555,7 +555,7 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     /// The values at a range of points.
-    pub fn evaluate(&self, points: Range<usize>, trains: &mut Trains) -> SampleResult {
+    pub fn evaluate(&self, points: Range<usize>, trains: &mut TrainCache) -> SampleResult {
         let mut all = SampleResult::default();
         for point in points {
             let answer = self.answer(point, trains);
@@ -614,7 +614,7 @@ fn sources(train: &Train) -> impl Iterator<Item = &str> {
 }
 
 /// Reads `QUANTITY=DISTRIBUTION`.
-fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> Result<Uncertain, Box<Diagnostic>> {
+fn read(text: &str, question: &PointSetup<'_>, assumptions: &mut Vec<String>) -> Result<Uncertain, Box<Diagnostic>> {
     let model = question.model();
     let Some((name, values)) = text.split_once('=') else {
         return Err(Box::new(fault(text, "there is no `=` between a quantity and its distribution")));
@@ -697,7 +697,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
 }
 
 /// What the file has, as it writes it.
-fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
+fn nominal(target: &Target, question: &PointSetup<'_>) -> Option<String> {
     let (model, base) = (question.model(), question.base());
     let train = model.train();
     // The unit in which people say it.
@@ -715,7 +715,7 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
             Some(format!("{} degC", plain(t - 273.15, 12)))
         }
         Target::Ratio => {
-            let [input, output] = [Who::Input, Who::Output].map(|who| question.role(train, base, who).ok());
+            let [input, output] = [ShaftRef::Input, ShaftRef::Output].map(|who| question.role(train, base, who).ok());
             let speeds = speeds(train, base);
             let ratio = speeds(input?)?.si() / speeds(output?)?.si();
             ratio.is_finite().then(|| plain(ratio, 12))
@@ -739,13 +739,13 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
             match (target, load) {
                 (Target::Torque(_), Load::Torque(q)) => {
                     let turn = match who {
-                        Who::Member(_) => false,
-                        Who::Input => backwards(),
-                        Who::Output => !backwards(),
+                        ShaftRef::Member(_) => false,
+                        ShaftRef::Input => backwards(),
+                        ShaftRef::Output => !backwards(),
                     };
                     Some(said(q, "N m", turn))
                 }
-                (Target::Power(_), Load::Power(q)) => Some(said(q, "W", *who == Who::Output)),
+                (Target::Power(_), Load::Power(q)) => Some(said(q, "W", *who == ShaftRef::Output)),
                 _ => None,
             }
         }

@@ -5,11 +5,11 @@
 
 use proptest::prelude::*;
 use willis::geometry::{
-    Chain, Fault, Pair, PairData, Remark, Tip, Wheel, conjugate_shifts, inverse_involute, involute, least_mesh_angle,
-    neighbour_clearance,
+    Fault, Pair, PairData, Remark, SimpleSetGeometry, Tip, Wheel, conjugate_shifts, inverse_involute, involute,
+    least_mesh_angle, neighbour_clearance,
 };
 use willis::losses::load_sharing::{self, LoadSharing, Relief, ToothLoad};
-use willis::losses::loss_factor::{Integrated, LossFactor, Path};
+use willis::losses::loss_factor::{Integrated, LossFactor, PathOfContact};
 
 fn addendum(coefficient: f64, alteration: f64) -> Tip {
     Tip::Addendum { coefficient, alteration }
@@ -37,7 +37,7 @@ fn data(m_n: f64, alpha_n: f64, beta: f64, b: f64, a: Option<f64>, wheels: [Whee
 }
 
 fn h(law: &str, pair: &Pair) -> f64 {
-    LossFactor::named(law).unwrap().eval(&Path::of(pair))
+    LossFactor::named(law).unwrap().eval(&PathOfContact::of(pair))
 }
 
 /// Equal within half a unit of the last printed digit.
@@ -280,9 +280,9 @@ fn val_fva_planetary_stage() {
     }
     // not valid there, and says so
     printed("Ohlendorf", h("ohlendorf", &inner), "0.09394");
-    let outside = LossFactor::named("ohlendorf").unwrap().outside(&Path::of(&inner));
+    let outside = LossFactor::named("ohlendorf").unwrap().outside(&PathOfContact::of(&inner));
     assert!(outside.iter().any(|o| o.symbol == "e_2"), "{outside:?}");
-    assert!(LossFactor::default().outside(&Path::of(&inner)).is_empty());
+    assert!(LossFactor::default().outside(&PathOfContact::of(&inner)).is_empty());
 }
 
 /// Wang et al. 2020, herringbone 35/31/97, m_n 7 mm, helix 22°, 80 mm: geometry recomputed in
@@ -362,7 +362,7 @@ fn val_uts_60_1161() {
     for (planet, a, outer, inner) in
         [(25.0, 2.625, "20.0000", "20.0000"), (24.0, 2.625, "23.4628", "15.8319"), (24.0, 2.65, "24.6785", "17.638")]
     {
-        let chain = Chain {
+        let chain = SimpleSetGeometry {
             module: inch / 8.0 * 1e-3,
             pressure_angle: 20f64.to_radians(),
             helix: 0.0,
@@ -559,14 +559,14 @@ fn regress_texts() {
 fn regress_stiffness_sharing() {
     let pair = Pair::new(&peers()[0].data).unwrap();
     let sharing = LoadSharing::Stiffness(load_sharing::Stiffness::DEFAULT);
-    let value = LossFactor::Integrated(Integrated { sharing }).eval(&Path::of(&pair));
+    let value = LossFactor::Integrated(Integrated { sharing }).eval(&PathOfContact::of(&pair));
     assert!(value < h("integrated", &pair) && value > 0.9 * h("integrated", &pair), "{value}");
 }
 
 #[test]
 fn regress_loss_factors_have_derivatives() {
     use num_dual::Dual64;
-    let base = Path { e: [0.76, 1.1], overlap_ratio: 0.54, ..Path::typical() };
+    let base = PathOfContact { e: [0.76, 1.1], overlap_ratio: 0.54, ..PathOfContact::typical() };
     for law in LossFactor::ALL {
         for k in 0..3 {
             let at = |d: f64| {
@@ -579,7 +579,7 @@ fn regress_loss_factors_have_derivatives() {
             };
             let difference = (at(1e-6) - at(-1e-6)) / 2e-6;
             let seed = |value: f64, j: usize| Dual64::new(value, f64::from(u8::from(j == k)));
-            let path = Path {
+            let path = PathOfContact {
                 teeth: base.teeth,
                 internal: base.internal,
                 base_helix: Dual64::from(base.base_helix),
@@ -612,7 +612,7 @@ fn val_arana_2019_tip_relief_of_type_c_gears() {
     let depth = 35e-6 * pair.pair_stiffness(206e9) * pair.total_width() / force;
     near("depth", depth, 1.114, 1e-3);
     let relief = Relief { depth: [depth; 2], length: [pair.contact_ratio - 1.0; 2] };
-    let path = Path { relief, ..Path::of(&pair) };
+    let path = PathOfContact { relief, ..PathOfContact::of(&pair) };
     let ours = LossFactor::default().eval(&path);
     near("H_VL", ours, 0.1680, 0.05 * 0.1680);
     near("H_VL without relief", h("integrated", &pair), 0.1986, 5e-4);
@@ -621,14 +621,14 @@ fn val_arana_2019_tip_relief_of_type_c_gears() {
 /// From no relief, bit for bit, to single contact all the way: 2 K integrated over one base pitch.
 #[test]
 fn regress_limits_of_tip_relief() {
-    let path = Path::of(&type_c());
+    let path = PathOfContact::of(&type_c());
     let law = LossFactor::default();
     for relief in [
         Relief { depth: [0.0; 2], length: [0.4; 2] },
         Relief { depth: [1.0; 2], length: [0.0; 2] },
         Relief { depth: [1e-300; 2], length: [0.4; 2] },
     ] {
-        let with = law.eval(&Path { relief, ..path });
+        let with = law.eval(&PathOfContact { relief, ..path });
         if relief.any() {
             near("the least relief", with, law.eval(&path), 1e-12);
         } else {
@@ -639,16 +639,16 @@ fn regress_limits_of_tip_relief() {
     let relief = Relief { depth: [1e6; 2], length: [long; 2] };
     let [from, to] = [path.e[1] - long / 2.0, 1.0 + long / 2.0 - path.e[1]];
     let single = path.factor() * (from * from + to * to);
-    near("single contact", law.eval(&Path { relief, ..path }), single, 1e-5 * single);
+    near("single contact", law.eval(&PathOfContact { relief, ..path }), single, 1e-5 * single);
     // the load is handed over linearly at a depth of 1
     let linear = long * path.contact_ratio() / 2.0 - 2.0 * long * long / 3.0
         + ((path.e[1] - long).powi(2) + (1.0 - path.e[1]).powi(2)) / 2.0;
     let relief = Relief { depth: [1.0; 2], length: [long; 2] };
-    near("linear", law.eval(&Path { relief, ..path }), 2.0 * path.factor() * linear, 1e-12);
+    near("linear", law.eval(&PathOfContact { relief, ..path }), 2.0 * path.factor() * linear, 1e-12);
     let mut last = law.eval(&path);
     for depth in 1..40 {
         let relief = Relief { depth: [f64::from(depth) * 0.1; 2], length: [long; 2] };
-        let own = law.eval(&Path { relief, ..path });
+        let own = law.eval(&PathOfContact { relief, ..path });
         assert!(own < last && own > single, "{depth}: {own}");
         last = own;
     }
@@ -657,7 +657,7 @@ fn regress_limits_of_tip_relief() {
 #[test]
 fn regress_tip_relief_has_derivatives() {
     use num_dual::Dual64;
-    let path = Path::typical();
+    let path = PathOfContact::typical();
     for sharing in [LoadSharing::default(), LoadSharing::Stiffness(load_sharing::Stiffness::DEFAULT)] {
         let law = LossFactor::Integrated(Integrated { sharing });
         for k in 0..4 {
@@ -665,10 +665,10 @@ fn regress_tip_relief_has_derivatives() {
             let at = |d: f64| {
                 let mut n = numbers;
                 n[k] += d;
-                law.eval(&Path { relief: Relief { depth: [n[0], n[1]], length: [n[2], n[3]] }, ..path })
+                law.eval(&PathOfContact { relief: Relief { depth: [n[0], n[1]], length: [n[2], n[3]] }, ..path })
             };
             let n: Vec<Dual64> = (0..4).map(|j| Dual64::new(numbers[j], f64::from(u8::from(j == k)))).collect();
-            let dual = law.eval(&Path {
+            let dual = law.eval(&PathOfContact {
                 teeth: path.teeth,
                 internal: path.internal,
                 base_helix: Dual64::from(path.base_helix),
@@ -749,7 +749,7 @@ fn finite(pair: &Pair) {
         all.extend(pair.curvature_radii(s));
         all.extend([pair.sliding_per_speed(s), pair.sum_speed_per_speed(s)]);
     }
-    let path = Path::of(pair);
+    let path = PathOfContact::of(pair);
     all.extend(LossFactor::ALL.iter().map(|l| l.eval(&path)));
     assert!(all.iter().all(|x| x.is_finite()), "{pair:?}\n{all:?}");
     assert!(pair.contact_ratio > 0.0);
@@ -832,7 +832,7 @@ proptest! {
     #[test]
     fn prop_loss_factors(data in good()) {
         let Ok(pair) = Pair::new(&data) else { return Ok(()) };
-        let path = Path::of(&pair);
+        let path = PathOfContact::of(&pair);
         for law in LossFactor::ALL {
             let value = law.eval(&path);
             prop_assert!(value >= 0.0 || law.meta().id == "ohlendorf", "{} {value}", law.meta().id);
@@ -840,7 +840,7 @@ proptest! {
         // exchanging the wheels changes nothing
         let mut exchanged = data.clone();
         exchanged.wheels.reverse();
-        let exchanged = Path::of(&Pair::new(&exchanged).unwrap());
+        let exchanged = PathOfContact::of(&Pair::new(&exchanged).unwrap());
         for law in LossFactor::ALL {
             prop_assert!((law.eval(&path) - law.eval(&exchanged)).abs() < 1e-12, "{}", law.meta().id);
         }
@@ -853,7 +853,7 @@ proptest! {
             prop_assert!((h("integrated", &nearly) - h("integrated", &spur)).abs() < 1e-6);
         }
         // a whole overlap ratio: uniform
-        let whole = Path { overlap_ratio: 2.0, ..path };
+        let whole = PathOfContact { overlap_ratio: 2.0, ..path };
         prop_assert!((LossFactor::default().eval(&whole) - h("uniform", &pair)).abs() < 1e-12);
         // between them it agrees with the sharing `uniform`, integrated
         let sharing = LoadSharing::Uniform(load_sharing::Uniform::DEFAULT);
@@ -898,7 +898,7 @@ proptest! {
             prop_assert!((all.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{all:?}");
             prop_assert!(all.iter().all(|s| (0.0..=1.0 + 1e-12).contains(s)), "{all:?}");
             // the integral is the sum over a fine grid
-            let path = Path { e: [e_a * 0.4, e_a * 0.6], relief, ..Path::typical() };
+            let path = PathOfContact { e: [e_a * 0.4, e_a * 0.6], relief, ..PathOfContact::typical() };
             let n = 4000;
             let place = |k: i32| e_a * (f64::from(k) + 0.5) / f64::from(n);
             let sum: f64 = (0..n).map(|k| share(place(k)) * (place(k) - e_a * 0.6).abs()).sum();
@@ -917,7 +917,7 @@ proptest! {
     #[test]
     fn prop_coaxial(z_s in 15i32..60, z_p in 15i32..60, more in -2i32..3, x_s in -0.2f64..0.5, x_p in -0.2f64..0.5) {
         let teeth = [z_s, z_p, z_s + 2 * z_p + more].map(f64::from);
-        let mut chain = Chain { module: 2e-3, pressure_angle: 20f64.to_radians(), helix: 0.3, teeth, shifts: [x_s, x_p, 0.0] };
+        let mut chain = SimpleSetGeometry { module: 2e-3, pressure_angle: 20f64.to_radians(), helix: 0.3, teeth, shifts: [x_s, x_p, 0.0] };
         if let Some(x_r) = chain.coaxial_ring_shift() {
             chain.shifts[2] = x_r;
             let [outer, inner] = chain.centre_distances().unwrap();

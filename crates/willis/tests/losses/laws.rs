@@ -11,14 +11,14 @@ use willis::losses::churning::{Churning, ImmersedGear};
 use willis::losses::film::{DowsonHigginson, DowsonHigginson1966, Film, FilmContact};
 use willis::losses::film_reduction::{FilmReduction, GuptaCheng, Inlet, MurchWilson};
 use willis::losses::load_sharing::{LoadSharing, Relief, ToothLoad};
-use willis::losses::loss_factor::{LossFactor, Path};
+use willis::losses::loss_factor::{LossFactor, PathOfContact};
 use willis::losses::mesh_friction::{Agma6011, Agma6011PerPlanet, Law as _, MeshContact, MeshFriction};
 use willis::losses::mesh_friction::{BenedictKelley, Fernandes, Matsumoto, Niemann, Schlenk, XuKahraman};
 use willis::losses::rolling::{Rolling, RollingContact};
 use willis::losses::rotor_drag::{Drum, RotorDrag};
 use willis::losses::seal::{Material, SealContact, SealLoss};
 use willis::losses::windage::{Disc, Windage};
-use willis::losses::{self, Entry, Tag, Trust, entries};
+use willis::losses::{self, LawSummary, Tag, Trust, entries};
 
 use crate::common::Uniform;
 
@@ -55,7 +55,7 @@ macro_rules! stays {
     };
 }
 
-stays!(f64, bool, [f64; 2], Option<[f64; 2]>, Base, willis::catalogue::bearing::Data, Supply, Material);
+stays!(f64, bool, [f64; 2], Option<[f64; 2]>, Base, willis::catalogue::bearing::BearingData, Supply, Material);
 
 /// The tests of one family: `module: Enum, State { fields that carry derivatives; other fields; of
 /// these the numbers on which ranges depend }`.
@@ -269,9 +269,9 @@ fn every_loss_factor_is_documented_finite_and_has_its_derivative() {
         documented(name, text, !law.meta().valid.is_empty());
     }
     for law in LossFactor::ALL {
-        let path = Path::typical();
-        let at = |e: f64| law.eval(&Path { e: [e, path.e[1]], ..path });
-        let dual = Path {
+        let path = PathOfContact::typical();
+        let at = |e: f64| law.eval(&PathOfContact { e: [e, path.e[1]], ..path });
+        let dual = PathOfContact {
             teeth: path.teeth,
             internal: path.internal,
             base_helix: Dual64::from(path.base_helix),
@@ -359,7 +359,7 @@ fn every_law_has_a_name_a_source_and_a_default() {
     let all = entries();
     let families: BTreeSet<_> = all.iter().map(|e| e.family).collect();
     for family in &families {
-        let of: Vec<&Entry> = all.iter().filter(|e| e.family == *family).collect();
+        let of: Vec<&LawSummary> = all.iter().filter(|e| e.family == *family).collect();
         assert_eq!(of.iter().filter(|e| e.default).count(), 1, "{family}");
         assert_eq!(of.iter().map(|e| e.id).collect::<BTreeSet<_>>().len(), of.len(), "{family}: an id stands twice");
     }

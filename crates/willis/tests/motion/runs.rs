@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use willis::dynamics::{ColumnKind, Method, Options, Outcome, RunReport, simulate};
-use willis::named::Named;
+use willis::named::NameMap;
 
 use crate::common::{example, examples};
 use crate::rows::{Rows, run, train};
@@ -307,7 +307,7 @@ impl Contraption {
 
 const LISTED: [&str; 3] = ["s", "r", "c"];
 
-fn speeds_differ(a: &Named<f64>, b: &Named<f64>, sense: f64) -> f64 {
+fn speeds_differ(a: &NameMap<f64>, b: &NameMap<f64>, sense: f64) -> f64 {
     a.iter().map(|(name, w)| (w - sense * b.get(name).expect("the same members")).abs()).fold(0.0, f64::max)
 }
 

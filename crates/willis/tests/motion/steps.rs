@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use allocation_counter::measure;
 use willis::dynamics::{
-    Batch, Column, FixedStep, InputKind, InputRefused, Method, Options, Output, Recorder, Sample, Simulation, simulate,
+    Batch, Column, FixedStep, InputKind, InputRefused, Method, Options, OutputHandle, Recorder, Sample, Simulation,
+    simulate,
 };
 use willis::train::Train;
 
@@ -68,7 +69,7 @@ fn energies_are_counted_beside_the_steps() {
 }
 
 /// Handles of everything that can be read, with their names.
-fn outputs(run: &mut FixedStep) -> Vec<(String, Output)> {
+fn outputs(run: &mut FixedStep) -> Vec<(String, OutputHandle)> {
     let names: Vec<String> = run.outputs().into_iter().map(|c| c.name).collect();
     names.into_iter().map(|name| (name.clone(), run.output(&name).unwrap())).collect()
 }

@@ -1,7 +1,7 @@
 //! Regimes and formulas of trains whose losses laws compute: efficiencies of a stated load.
 
 use willis::analysis::{Verdict, operate};
-use willis::named::Named;
+use willis::named::NameMap;
 use willis::regimes::{
     EfficiencyBasis, FormulaRequest, LocateRequest, NoBasis, RegimeSelection, family, formulas, locate, regimes,
 };
@@ -25,14 +25,14 @@ fn without_operations(text: &str) -> String {
 }
 
 /// The efficiencies of meshes that the analysis of an operation of the file tells.
-fn analysed(train: &Train, operation: &str) -> Named<f64> {
+fn analysed(train: &Train, operation: &str) -> NameMap<f64> {
     let operation = train.operations().iter().find(|o| o.name == operation).unwrap();
     let (report, _) = operate(train, operation).unwrap();
     assert_eq!(report.verdict, Verdict::Unique, "{}", operation.name);
     report.solutions[0].meshes.iter().map(|(name, mesh)| (name.clone(), mesh.efficiency)).collect()
 }
 
-fn assert_alike(basis: &EfficiencyBasis, analysed: &Named<f64>) {
+fn assert_alike(basis: &EfficiencyBasis, analysed: &NameMap<f64>) {
     for (name, eta) in basis.efficiencies.iter().filter(|(name, _)| !basis.nominal.contains(name)) {
         let there = analysed.get(name).unwrap();
         // To six decimals.

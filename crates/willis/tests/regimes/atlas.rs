@@ -10,10 +10,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use allocation_counter::measure;
 use serde_json::Value;
 use willis::analysis::{Role, Selection, Verdict, analyze};
-use willis::compiled::{Duty, Output, PointVerdict};
+use willis::compiled::{CompileRequest, CompiledOutput, PointVerdict};
 use willis::exact::Rational;
 use willis::regimes::{
-    Atlas, ClosedFormula, Efficiencies, FormulaRequest, Outside, Ratios, Reach, RegimeReport, RegimeSelection,
+    Atlas, ClosedFormula, Efficiencies, FormulaError, FormulaRequest, Ratios, Reach, RegimeReport, RegimeSelection,
     RegionReport, SymbolKind, formulas, regimes,
 };
 use willis::symbolic::Notation;
@@ -71,7 +71,7 @@ fn evaluate(
     sources: &[(String, Source)],
     speed: &dyn Fn(&str) -> Rational,
     torque: &dyn Fn(&str) -> Rational,
-) -> Result<Rational, Outside> {
+) -> Result<Rational, FormulaError> {
     f.evaluate(&|name| {
         let (_, source) = sources.iter().find(|(n, _)| n == name)?;
         Some(match source {
@@ -389,7 +389,7 @@ fn val_all_80_regimes_of_one_set_with_two_freedoms() {
                             let (w, t) = (back(&p.w), back(&p.t));
                             assert_eq!(evaluate(formula, &sources, &|l| at(&w, l), &|l| at(&t, l)), found);
                             let wrong = evaluate(formula, &sources, &|l| at(&p.w, l), &|l| at(&t, l));
-                            assert!(matches!(wrong, Err(Outside::Condition(_))), "{wrong:?} {p:?}");
+                            assert!(matches!(wrong, Err(FormulaError::Condition(_))), "{wrong:?} {p:?}");
                         }
                         // The bounds of the efficiency are its limits at the bounding directions.
                         let mut ends = [(from, to), (to, from)].map(|(near, far)| {
@@ -737,9 +737,9 @@ fn compare_inversions(shape: &Shape, eta: [i64; 2], random: &mut Dice) -> usize 
             }
         }
         for wrong in [Rational::ZERO, q(-1, 2), q(1001, 1000)] {
-            assert!(matches!(number(&set.r, &wrong), Err(Outside::NoEfficiency(_))), "{what}");
+            assert!(matches!(number(&set.r, &wrong), Err(FormulaError::NoEfficiency(_))), "{what}");
         }
-        assert_eq!(f.evaluate(&|_| None), Err(Outside::Missing(f.arguments[0].name.clone())));
+        assert_eq!(f.evaluate(&|_| None), Err(FormulaError::Missing(f.arguments[0].name.clone())));
     }
     locked
 }
@@ -953,11 +953,11 @@ fn given_torques(formulas: &[(&ClosedFormula, Vec<(String, Source)>)]) -> Vec<St
     all
 }
 
-fn duty_of(atlas: &Atlas, speeds: &[String], torques: &[String]) -> Duty {
-    let duty = Duty::new(speeds.iter().map(String::as_str), torques.iter().map(String::as_str));
+fn duty_of(atlas: &Atlas, speeds: &[String], torques: &[String]) -> CompileRequest {
+    let duty = CompileRequest::new(speeds.iter().map(String::as_str), torques.iter().map(String::as_str));
     let duty = if atlas.state == "as drawn" { duty } else { duty.state(&atlas.state) };
-    let duty = duty.output(Output::Efficiency);
-    atlas.terminals.iter().fold(duty, |d, t| d.output(Output::Torque(t.clone())))
+    let duty = duty.output(CompiledOutput::Efficiency);
+    atlas.terminals.iter().fold(duty, |d, t| d.output(CompiledOutput::Torque(t.clone())))
 }
 
 fn sign(x: f64) -> i8 {
@@ -1055,8 +1055,8 @@ fn compare_one_freedom(name: &str, train: &Train, atlas: &Atlas, random: &mut Di
             assert_eq!(own.count(), 1, "{what}");
         }
         // Prescribed: the speed of the input and a load at the output, which only driving answers.
-        let duty =
-            duty_of(atlas, std::slice::from_ref(from), std::slice::from_ref(to)).output(Output::Speed(to.clone()));
+        let duty = duty_of(atlas, std::slice::from_ref(from), std::slice::from_ref(to))
+            .output(CompiledOutput::Speed(to.clone()));
         let compiled = train.compile(&duty).unwrap();
         let mut work = compiled.workspace();
         let mut out = vec![0.0; compiled.outputs()];

@@ -3,7 +3,8 @@
 use allocation_counter::measure;
 use willis::analysis::{Selection, Verdict, analyze};
 use willis::compiled::{
-    CompiledTrain, Duty, GridInputs, Output, OutputSummary, PointVerdict, Points, PowerLoss, ShaftDrag,
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, PointVerdict, PowerLoss,
+    ShaftDrag,
 };
 use willis::diagnostic::Code;
 use willis::train::{OperationSpec, SetSpec, Specification, Train};
@@ -36,12 +37,12 @@ fn compiled_equals_analysis_with_two_freedoms() {
         (power_split(), ["sun", "ring"], "carrier", ["sun", "ring"]),
         (compound_split(), ["a", "d"], "a", ["b", "d"]),
     ] {
-        let duty = Duty::new(speeds, [torque])
-            .output(Output::Torque(open[0].into()))
-            .output(Output::Torque(open[1].into()))
-            .output(Output::Loss)
-            .output(Output::Efficiency)
-            .output(Output::Speed(open[0].into()));
+        let duty = CompileRequest::new(speeds, [torque])
+            .output(CompiledOutput::Torque(open[0].into()))
+            .output(CompiledOutput::Torque(open[1].into()))
+            .output(CompiledOutput::Loss)
+            .output(CompiledOutput::Efficiency)
+            .output(CompiledOutput::Speed(open[0].into()));
         let compiled = builder.clone().build().unwrap().compile(&duty).unwrap();
         let mut work = compiled.workspace();
         for k in 0..300 {
@@ -91,14 +92,14 @@ fn compiled_equals_analysis_in_every_gear() {
         let input = train.member_name(train.input().unwrap()).to_owned();
         let output = train.member_name(train.output().unwrap()).to_owned();
         for state in train.states() {
-            let mut duty = Duty::new([input.as_str()], [input.as_str()])
+            let mut duty = CompileRequest::new([input.as_str()], [input.as_str()])
                 .state(&state.name)
-                .output(Output::Torque(output.clone()))
-                .output(Output::Efficiency);
+                .output(CompiledOutput::Torque(output.clone()))
+                .output(CompiledOutput::Efficiency);
             let elements: Vec<String> =
                 state.engaged.iter().map(|e| train.shift_elements()[e.index()].name.clone()).collect();
             for e in &elements {
-                duty = duty.output(Output::ShiftElementTorque(e.clone()));
+                duty = duty.output(CompiledOutput::ShiftElementTorque(e.clone()));
             }
             let compiled = train.compile(&duty).unwrap();
             assert!(compiled.is_certified());
@@ -132,7 +133,7 @@ fn compiled_equals_analysis_in_every_gear() {
     }
 }
 
-fn with_drag(duty: Duty, members: &[&str]) -> Duty {
+fn with_drag(duty: CompileRequest, members: &[&str]) -> CompileRequest {
     members
         .iter()
         .enumerate()
@@ -150,38 +151,48 @@ fn a_batch_equals_its_points() {
         (column(-400.0, 400.0, &mut random), column(-150.0, 150.0, &mut random), column(-200.0, 200.0, &mut random));
     let eight = common::train("zf-8hp70");
     let shafts = ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"];
-    let mut duties: Vec<(Train, Duty, usize)> = Vec::new();
+    let mut duties: Vec<(Train, CompileRequest, usize)> = Vec::new();
     for gear in ["1", "5", "8", "R"] {
-        let duty = with_drag(Duty::new(["input"], ["input"]).state(gear), &shafts)
-            .output(Output::Torque("output".into()))
-            .output(Output::MeshTorque("P4.sun-planet".into()))
-            .output(Output::Speed("output".into()))
-            .output(Output::Loss)
-            .output(Output::Efficiency);
+        let duty = with_drag(CompileRequest::new(["input"], ["input"]).state(gear), &shafts)
+            .output(CompiledOutput::Torque("output".into()))
+            .output(CompiledOutput::MeshTorque("P4.sun-planet".into()))
+            .output(CompiledOutput::Speed("output".into()))
+            .output(CompiledOutput::Loss)
+            .output(CompiledOutput::Efficiency);
         duties.push((eight.clone(), duty, 1));
     }
     for outputs in [
-        vec![Output::Torque("ring".into()), Output::Torque("carrier".into()), Output::Loss, Output::Efficiency],
-        vec![Output::Efficiency],
-        vec![Output::Loss, Output::Torque("carrier".into()), Output::Loss, Output::Torque("sun".into())],
-        vec![Output::Speed("ring".into()), Output::Efficiency],
+        vec![
+            CompiledOutput::Torque("ring".into()),
+            CompiledOutput::Torque("carrier".into()),
+            CompiledOutput::Loss,
+            CompiledOutput::Efficiency,
+        ],
+        vec![CompiledOutput::Efficiency],
+        vec![
+            CompiledOutput::Loss,
+            CompiledOutput::Torque("carrier".into()),
+            CompiledOutput::Loss,
+            CompiledOutput::Torque("sun".into()),
+        ],
+        vec![CompiledOutput::Speed("ring".into()), CompiledOutput::Efficiency],
     ] {
-        let mut duty = with_drag(Duty::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
+        let mut duty = with_drag(CompileRequest::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
         for o in outputs {
             duty = duty.output(o);
         }
         duties.push((power_split().build().unwrap(), duty, 2));
     }
-    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"])
-        .output(Output::Torque("b".into()))
-        .output(Output::Efficiency);
+    let duty = with_drag(CompileRequest::new(["a", "d"], ["a"]), &["a", "c"])
+        .output(CompiledOutput::Torque("b".into()))
+        .output(CompiledOutput::Efficiency);
     duties.push((compound_split().build().unwrap(), duty, 2));
     for (train, duty, freedoms) in duties {
         let compiled = train.compile(&duty).unwrap();
         let mut work = compiled.workspace();
         let speeds: Vec<&[f64]> = [&w0[..], &w1[..]][..freedoms].to_vec();
         let torques = [&t[..]];
-        let points = Points { speeds: &speeds, torques: &torques };
+        let points = BatchInputs { speeds: &speeds, torques: &torques };
         let mut out = vec![vec![f64::NAN; n]; compiled.outputs()];
         let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
         assert_eq!(compiled.evaluate_batch(&points, &mut work, &mut slices), 0);
@@ -221,24 +232,30 @@ fn expanded(values: &[&[f64]], order: &[usize]) -> Vec<Vec<f64>> {
 /// from whichever point on.
 #[test]
 fn a_grid_is_its_arrays_to_the_last_bit() {
-    let split = |outputs: &[Output]| {
-        let duty = with_drag(Duty::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
-        power_split().build().unwrap().compile(&outputs.iter().cloned().fold(duty, Duty::output)).unwrap()
+    let split = |outputs: &[CompiledOutput]| {
+        let duty = with_drag(CompileRequest::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
+        power_split().build().unwrap().compile(&outputs.iter().cloned().fold(duty, CompileRequest::output)).unwrap()
     };
-    let [ring, carrier] = ["ring", "carrier"].map(|m| Output::Torque(m.into()));
-    let reversed = Duty::new(["carrier", "ring"], ["ring"]).output(carrier.clone()).output(Output::Efficiency);
-    let third = Duty::new(["sun", "ring"], ["carrier"]).output(Output::Loss).output(ring.clone());
-    let bare = |duty: &Duty| power_split().build().unwrap().compile(duty).unwrap();
-    let eight = with_drag(Duty::new(["input"], ["input"]).state("5"), &SHAFTS);
-    let eight = eight.output(Output::Torque("output".into())).output(Output::Torque("input".into()));
+    let [ring, carrier] = ["ring", "carrier"].map(|m| CompiledOutput::Torque(m.into()));
+    let reversed =
+        CompileRequest::new(["carrier", "ring"], ["ring"]).output(carrier.clone()).output(CompiledOutput::Efficiency);
+    let third = CompileRequest::new(["sun", "ring"], ["carrier"]).output(CompiledOutput::Loss).output(ring.clone());
+    let bare = |duty: &CompileRequest| power_split().build().unwrap().compile(duty).unwrap();
+    let eight = with_drag(CompileRequest::new(["input"], ["input"]).state("5"), &SHAFTS);
+    let eight = eight.output(CompiledOutput::Torque("output".into())).output(CompiledOutput::Torque("input".into()));
     let trains = [
-        split(&[ring.clone(), carrier.clone(), Output::Loss, Output::Efficiency]),
-        split(&[Output::Efficiency]),
-        split(&[Output::Loss, Output::Efficiency, Output::Torque("sun".into()), Output::Loss]),
-        split(&[Output::Speed("ring".into()), ring, Output::Efficiency]),
+        split(&[ring.clone(), carrier.clone(), CompiledOutput::Loss, CompiledOutput::Efficiency]),
+        split(&[CompiledOutput::Efficiency]),
+        split(&[
+            CompiledOutput::Loss,
+            CompiledOutput::Efficiency,
+            CompiledOutput::Torque("sun".into()),
+            CompiledOutput::Loss,
+        ]),
+        split(&[CompiledOutput::Speed("ring".into()), ring, CompiledOutput::Efficiency]),
         bare(&reversed),
         bare(&third),
-        common::train("zf-8hp70").compile(&eight.clone().output(Output::Efficiency)).unwrap(),
+        common::train("zf-8hp70").compile(&eight.clone().output(CompiledOutput::Efficiency)).unwrap(),
         eight_speed([1.0; 4]).compile(&with_laws(eight)).unwrap(),
     ];
     let mut up: Vec<f64> = (0..700).map(|k| -200.0 + 0.57 * f64::from(k)).collect();
@@ -268,7 +285,7 @@ fn a_grid_is_its_arrays_to_the_last_bit() {
                 assert_eq!(grid.len(), n);
                 for range in [0..n, 1..n - 1, n / 3..n / 3 + 1, 5..5] {
                     let given: Vec<&[f64]> = slices.iter().map(|s| &s[range.clone()]).collect();
-                    let points = Points { speeds: &given[..freedoms], torques: &given[freedoms..] };
+                    let points = BatchInputs { speeds: &given[..freedoms], torques: &given[freedoms..] };
                     let mut work = compiled.workspace();
                     let filled = |run: &mut dyn FnMut(&mut [&mut [f64]]) -> usize| {
                         let mut out = vec![vec![f64::NAN; range.len()]; compiled.outputs()];
@@ -328,9 +345,9 @@ fn a_grid_is_its_arrays_to_the_last_bit() {
 #[test]
 fn a_point_allocates_nothing() {
     let train = common::train("zf-8hp70");
-    let duty = with_drag(Duty::new(["input"], ["input"]).state("5"), &["input", "output", "c3"])
-        .output(Output::Torque("output".into()))
-        .output(Output::Efficiency);
+    let duty = with_drag(CompileRequest::new(["input"], ["input"]).state("5"), &["input", "output", "c3"])
+        .output(CompiledOutput::Torque("output".into()))
+        .output(CompiledOutput::Efficiency);
     for duty in [duty.clone(), with_laws(duty)] {
         let compiled = train.compile(&duty).unwrap();
         let mut work = compiled.workspace();
@@ -343,7 +360,7 @@ fn a_point_allocates_nothing() {
             for i in 0..1000 {
                 compiled.evaluate(&[w[i]], &[t[i]], &mut work, &mut out);
             }
-            compiled.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
+            compiled.evaluate_batch(&BatchInputs { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
         });
         assert_eq!(count.count_total, 0);
     }
@@ -353,7 +370,7 @@ fn a_point_allocates_nothing() {
 #[test]
 fn verdicts_of_points() {
     let train = common::train("two-efficiencies");
-    let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
+    let duty = CompileRequest::new(["input"], ["output"]).output(CompiledOutput::Efficiency);
     let compiled = train.compile(&duty).unwrap();
     assert!(!compiled.is_certified());
     let mut work = compiled.workspace();
@@ -366,7 +383,7 @@ fn verdicts_of_points() {
     assert!(out[0].is_nan());
     let (w, t) = ([100.0; 7], [-10.0, 10.0, -1.0, 5.0, -5.0, 1.0, -3.0]);
     let mut column = [0.0; 7];
-    let odd = compiled.evaluate_batch(&Points { speeds: &[&w], torques: &[&t] }, &mut work, &mut [&mut column]);
+    let odd = compiled.evaluate_batch(&BatchInputs { speeds: &[&w], torques: &[&t] }, &mut work, &mut [&mut column]);
     assert_eq!(odd, 7);
     assert!(column[1].is_nan() && column[0] > 0.0);
     let a = analyze(&train, &Selection::default()).unwrap();
@@ -396,21 +413,21 @@ fn eight_speed(etas: [f64; 4]) -> Train {
     Train::from_toml(&text).unwrap()
 }
 
-fn eight_speed_duty(gear: &str) -> Duty {
-    let mut duty = Duty::new(["input"], ["input"]).state(gear);
+fn eight_speed_duty(gear: &str) -> CompileRequest {
+    let mut duty = CompileRequest::new(["input"], ["input"]).state(gear);
     for m in SHAFTS {
         duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
     }
     for s in 1..=4 {
-        duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+        duty = duty.output(CompiledOutput::MeshTorque(format!("P{s}.sun-planet")));
     }
     for m in SHAFTS {
-        duty = duty.output(Output::Speed(m.into()));
+        duty = duty.output(CompiledOutput::Speed(m.into()));
     }
-    duty.output(Output::Torque("output".into())).output(Output::Loss).output(Output::Efficiency)
+    duty.output(CompiledOutput::Torque("output".into())).output(CompiledOutput::Loss).output(CompiledOutput::Efficiency)
 }
 
-fn with_laws(duty: Duty) -> Duty {
+fn with_laws(duty: CompileRequest) -> CompileRequest {
     (1..=4).fold(duty, |d, s| d.mesh_loss(&format!("P{s}"), LAW))
 }
 
@@ -495,9 +512,9 @@ fn load_dependent_batches_are_their_points() {
         duties.push((eight_speed([1.0; 4]), with_laws(eight_speed_duty(gear)), 1));
     }
     let steep = PowerLoss { exponent: 0.6, torque: 0.0, speed: 0.5, ..LAW };
-    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"])
-        .output(Output::Torque("b".into()))
-        .output(Output::Efficiency);
+    let duty = with_drag(CompileRequest::new(["a", "d"], ["a"]), &["a", "c"])
+        .output(CompiledOutput::Torque("b".into()))
+        .output(CompiledOutput::Efficiency);
     duties.push((compound_split().build().unwrap(), duty.clone().mesh_loss("P2", LAW), 2));
     let duty = duty.mesh_loss("P1.sun-planet", LAW).mesh_loss("P1.planet-ring", steep).mesh_loss("P2", steep);
     duties.push((compound_split().build().unwrap(), duty, 2));
@@ -509,7 +526,7 @@ fn load_dependent_batches_are_their_points() {
         let torques = [&t[..]];
         let mut out = vec![vec![f64::NAN; n]; compiled.outputs()];
         let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
-        let odd = compiled.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
+        let odd = compiled.evaluate_batch(&BatchInputs { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
         let mut one = vec![0.0; compiled.outputs()];
         let mut odd_points = 0;
         for i in 0..n {
@@ -531,7 +548,7 @@ fn load_dependent_verdicts() {
     let train = common::train("two-efficiencies");
     let compiled = |exponent: f64, most: [f64; 2]| {
         let law = |coefficient, most| PowerLoss { coefficient, exponent, torque: 1.0, speed: 1.0, most };
-        let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
+        let duty = CompileRequest::new(["input"], ["output"]).output(CompiledOutput::Efficiency);
         train.compile(&duty.mesh_loss("A", law(0.02, most[0])).mesh_loss("B", law(0.08, most[1]))).unwrap()
     };
     let verdict = |compiled: &CompiledTrain, load: f64| {
@@ -547,14 +564,14 @@ fn load_dependent_verdicts() {
     assert!(locked == PointVerdict::Locked && efficiency.is_nan());
     let (w, t) = ([100.0; 3], [-10.0, 10.0, -1.0]);
     let mut column = [0.0; 3];
-    let points = Points { speeds: &[&w], torques: &[&t] };
+    let points = BatchInputs { speeds: &[&w], torques: &[&t] };
     assert_eq!(constant.evaluate_batch(&points, &mut constant.workspace(), &mut [&mut column]), 3);
     assert!(column[1].is_nan() && column[0] > 0.0);
     assert_eq!(verdict(&compiled(0.002, [0.021, 0.083]), -10.0).0, PointVerdict::Multiple);
     assert_eq!(verdict(&compiled(0.05, [0.03, 0.1]), -10.0).0, PointVerdict::Undecided);
 
     // A law that reaches its ceiling.
-    let duty = Duty::new(["sun", "carrier"], ["sun"]).output(Output::Torque("ring".into()));
+    let duty = CompileRequest::new(["sun", "carrier"], ["sun"]).output(CompiledOutput::Torque("ring".into()));
     let split = power_split().build().unwrap().compile(&duty.mesh_loss("P1", PowerLoss { most: 0.03, ..LAW })).unwrap();
     let mut work = split.workspace();
     let mut out = [0.0];
@@ -570,7 +587,7 @@ fn load_dependent_verdicts() {
 #[test]
 fn laws_that_cannot_be() {
     let code = |train: &Train, losses: &[(&str, PowerLoss)]| {
-        let duty = Duty::new(["sun", "carrier"], ["sun"]);
+        let duty = CompileRequest::new(["sun", "carrier"], ["sun"]);
         let duty = losses.iter().fold(duty, |d, (name, law)| d.mesh_loss(name, *law));
         train.compile(&duty).unwrap_err().iter().next().unwrap().code
     };
@@ -602,7 +619,9 @@ fn powers_beyond_floating_point_have_no_efficiency() {
             .set(SetSpec::simple("P1", ("s", 30), (ring, 70), "c").planet(20, 4).mesh_efficiency(0.99))
             .build()
             .expect("a train");
-        let compiled = train.compile(&Duty::new(speeds.clone(), ["s"]).output(Output::Efficiency)).expect("a duty");
+        let compiled = train
+            .compile(&CompileRequest::new(speeds.clone(), ["s"]).output(CompiledOutput::Efficiency))
+            .expect("a duty");
         let mut work = compiled.workspace();
         for torque in [1.0, 1e300, 5.5e307, 1e308, f64::MAX, -5.5e307] {
             for speed in [1.0, 1e-3, 1e3, -1.0] {
@@ -614,7 +633,7 @@ fn powers_beyond_floating_point_have_no_efficiency() {
                 let (columns, torques) = (at.map(|w| [w; 3]), [[torque; 3]]);
                 let given: Vec<&[f64]> = columns[..speeds.len()].iter().map(|c| &c[..]).collect();
                 let mut batch = [0.0; 3];
-                let points = Points { speeds: &given, torques: &[&torques[0]] };
+                let points = BatchInputs { speeds: &given, torques: &[&torques[0]] };
                 compiled.evaluate_batch(&points, &mut work, &mut [&mut batch]);
                 for e in batch {
                     assert!(e.is_nan() || (0.0..=1.0).contains(&e), "{ring} {torque} {speed}: {batch:?}");

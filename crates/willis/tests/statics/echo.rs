@@ -4,7 +4,7 @@ use willis::analysis::{Role, SolutionReport, operate};
 use willis::hypergraph::{NodeKind, hypergraph};
 use willis::model::Model;
 use willis::regimes::{LocateRequest, locate};
-use willis::study::{Axis, ColumnValues, Hold, Question, Sweep, SweepWorkspace, Trains};
+use willis::study::{Axis, ColumnValues, Hold, PointSetup, Sweep, SweepWorkspace, TrainCache};
 use willis::train::{Load, MemberId, Operation, Store, Train};
 use willis::units::{Dimension, Quantity, parse};
 
@@ -215,9 +215,9 @@ fn prop_sweeps_have_the_values_of_their_axes() {
             false => (Dimension::POWER, format!("{input}.power_w")),
         };
         let columns = [format!("{input}.speed_rad_s"), column.clone(), format!("{input}.speed_rpm")];
-        let question = || Question::new(&model, None, None, Hold::AsGiven).unwrap();
+        let question = || PointSetup::new(&model, None, None, Hold::AsGiven).unwrap();
         let sweep = Sweep::new(question(), axes.clone(), &columns).unwrap();
-        let mut found = vec![sweep.rows(0, sweep.len(), &mut Trains::default())];
+        let mut found = vec![sweep.rows(0, sweep.len(), &mut TrainCache::default())];
         let mut names: Vec<Vec<String>> = vec![sweep.columns().map(|c| c.name.clone()).collect()];
         if load.starts_with("torque") {
             let sweep = Sweep::new(question(), axes.clone(), &columns[..2]).unwrap();

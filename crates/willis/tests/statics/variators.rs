@@ -2,10 +2,10 @@
 //! sign pattern tried; each figure is that fraction as it was printed there).
 
 use willis::analysis::{Analysis, LimitedQuantity, OperationReport, Role, Selection, SolutionReport, Verdict, analyze};
-use willis::compiled::{Duty, Output};
+use willis::compiled::{CompileRequest, CompiledOutput};
 use willis::diagnostic::{Code, Diagnostics};
 use willis::model::Model;
-use willis::study::{Axis, Hold, Question, Sweep, sensitivity};
+use willis::study::{Axis, Hold, PointSetup, Sweep, sensitivity};
 use willis::train::{Document, Train};
 
 fn read(text: &str) -> Train {
@@ -447,7 +447,7 @@ fn the_ratio_is_an_axis() {
          name = \"o\"\nspeeds = {{ engine = \"2000 rpm\", ring = \"1500 rpm\" }}\ntorques = {{ engine = \"100 N m\" }}\n"
     );
     let model = Model::from_toml(&train).unwrap();
-    let question = Question::new(&model, None, None, Hold::Power).unwrap();
+    let question = PointSetup::new(&model, None, None, Hold::Power).unwrap();
     let axis = Axis::parse("ratio=0.5,1,4", &model).unwrap();
     let sweep =
         Sweep::new(question, vec![axis], &["variators".into(), "ratio".into(), "ring.speed_rpm".into()]).unwrap();
@@ -472,7 +472,7 @@ fn the_ratio_is_an_axis() {
     )
     .unwrap();
     let axis = Axis::parse("P1.ring.teeth=60,70,90", &plain).unwrap();
-    let question = Question::new(&plain, None, None, Hold::AsGiven).unwrap();
+    let question = PointSetup::new(&plain, None, None, Hold::AsGiven).unwrap();
     let sweep = Sweep::new(question, vec![axis], &["ratio".into()]).unwrap();
     let found: Vec<f64> = (0..3).map(|k| sweep.answer(k, &mut Default::default()).ratio.unwrap()).collect();
     found.iter().zip([3.0, 10.0 / 3.0, 4.0]).for_each(|(a, b)| near("teeth", *a, b));
@@ -482,7 +482,9 @@ fn the_ratio_is_an_axis() {
 #[test]
 fn what_does_not_know_variators_says_so() {
     let train = prius("ring = \"1500 rpm\"", "members = [\"mg1\", \"ring\"]\nefficiency = 0.9");
-    let wrong = train.compile(&Duty::new(["engine", "ring"], ["engine"]).output(Output::Efficiency)).unwrap_err();
+    let wrong = train
+        .compile(&CompileRequest::new(["engine", "ring"], ["engine"]).output(CompiledOutput::Efficiency))
+        .unwrap_err();
     assert!(wrong.to_string().contains("variator"), "{wrong}");
 }
 

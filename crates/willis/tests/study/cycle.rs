@@ -2,7 +2,7 @@
 
 use willis::analysis::{Selection, analyze};
 use willis::model::Model;
-use willis::study::{Basis, ColumnValues, Cycle, CycleReport, CycleRequest, Hold, Profile, Question, cycle};
+use willis::study::{Basis, ColumnValues, Cycle, CycleReport, CycleRequest, Hold, PointSetup, Profile, cycle};
 use willis::work::{Serial, Work};
 use willis::{Diagnostics, Train};
 
@@ -40,8 +40,8 @@ fn subject(text: &str) -> Model {
     Model::from_toml(text).unwrap_or_else(|r| panic!("{r}"))
 }
 
-fn question(subject: &Model) -> Question<'_> {
-    Question::new(subject, None, None, Hold::AsGiven).unwrap()
+fn question(subject: &Model) -> PointSetup<'_> {
+    PointSetup::new(subject, None, None, Hold::AsGiven).unwrap()
 }
 
 fn report(train: &str, profile: &str) -> CycleReport {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use willis::analysis::{Analysis, Selection, analyze};
 use willis::model::{Model, Target};
 use willis::study::{
-    Axis, ColumnValues, Hold, PointAnswer, PointAnswers, PointVerdict, Question, Rows, Sweep, SweepRequest, Trains,
-    sensitivity,
+    Axis, ColumnValues, Hold, PointAnswer, PointAnswers, PointSetup, PointVerdict, Rows, Sweep, SweepRequest,
+    TrainCache, sensitivity,
 };
 use willis::train::{Document, Load, Operation, Train};
 
@@ -23,7 +23,7 @@ fn axes(subject: &Model, over: &[&str]) -> Vec<Axis> {
 }
 
 fn sweep<'s>(subject: &'s Model, over: &[&str], columns: &[&str], hold: Hold) -> Sweep<'s> {
-    let question = Question::new(subject, None, None, hold).unwrap();
+    let question = PointSetup::new(subject, None, None, hold).unwrap();
     let columns: Vec<String> = columns.iter().map(|c| (*c).to_owned()).collect();
     Sweep::new(question, axes(subject, over), &columns).unwrap_or_else(|d| panic!("{d}"))
 }
@@ -488,7 +488,7 @@ fn groups_of_columns_share_no_name() {
     for (file, text) in common::examples() {
         let subject = subject(&text);
         let of = |columns: &[&str]| -> Option<Vec<String>> {
-            let question = Question::new(&subject, None, None, Hold::AsGiven).ok()?;
+            let question = PointSetup::new(&subject, None, None, Hold::AsGiven).ok()?;
             let axis = Axis::parse("input.speed=100,200 rpm", &subject).ok()?;
             let columns: Vec<String> = columns.iter().map(|c| (*c).to_owned()).collect();
             let sweep = Sweep::new(question, vec![axis], &columns).ok()?;
@@ -514,12 +514,12 @@ fn groups_of_columns_share_no_name() {
 /// several temperatures where that counts.
 fn varied(model: &Model) -> Vec<(Arc<Train>, Operation)> {
     let train = model.train();
-    let (mut points, mut trains) = (vec![], Trains::default());
+    let (mut points, mut trains) = (vec![], TrainCache::default());
     let oil = Target::parse("oil.temperature", model).ok().filter(|_| train.is_physical());
     let oils: &[Option<&str>] = if oil.is_some() { &[None, Some("41 degC"), Some("95.5 degC")] } else { &[None] };
     for operation in train.operations().iter().take(4) {
         let ([(speed, w)], [(load, value)]) = (&operation.speeds[..], &operation.loads[..]) else { continue };
-        let question = Question::new(model, Some(&operation.name), None, Hold::AsGiven).unwrap();
+        let question = PointSetup::new(model, Some(&operation.name), None, Hold::AsGiven).unwrap();
         let (what, unit, value) = match value {
             Load::Torque(t) => ("torque", "N m", t.si()),
             Load::Power(p) => ("power", "W", p.si()),

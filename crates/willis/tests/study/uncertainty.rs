@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use willis::diagnostic::Diagnostics;
 use willis::model::Model;
 use willis::study::{
-    Design, Distribution, PointVerdict, SampleResult, Statistics, Trains, Uncertainty, UncertaintyPlan,
+    Design, Distribution, PointVerdict, SampleResult, Statistics, TrainCache, Uncertainty, UncertaintyPlan,
     UncertaintyRequest, WarningKind, standard_normal_quantile,
 };
 use willis::work::Serial;
@@ -63,7 +63,7 @@ fn request(vary: &[&str], samples: usize, seed: u64) -> UncertaintyRequest {
 fn ask(text: &str, request: &UncertaintyRequest) -> Result<Uncertainty, Diagnostics> {
     let subject = subject(text);
     let plan = UncertaintyPlan::new(&subject, request)?;
-    Ok(plan.finish(&plan.evaluate(0..plan.len(), &mut Trains::default())))
+    Ok(plan.finish(&plan.evaluate(0..plan.len(), &mut TrainCache::default())))
 }
 
 fn found(text: &str, vary: &[&str], samples: usize, seed: u64) -> Uncertainty {
@@ -382,10 +382,10 @@ fn the_same_seed_gives_the_same_bytes_however_it_is_cut() {
     let subject = subject(PHYSICAL);
     let vary = ["law.mesh_friction=schlenk,niemann", "oil.temperature=60..80 degC", "input.torque=+-5%"];
     let plan = UncertaintyPlan::new(&subject, &request(&vary, 128, 9)).unwrap();
-    let whole = plan.evaluate(0..plan.len(), &mut Trains::default());
+    let whole = plan.evaluate(0..plan.len(), &mut TrainCache::default());
     let mut parts = SampleResult::default();
     for from in (0..plan.len()).step_by(77) {
-        parts.join(plan.evaluate(from..plan.len().min(from + 77), &mut Trains::default()));
+        parts.join(plan.evaluate(from..plan.len().min(from + 77), &mut TrainCache::default()));
     }
     assert_eq!(whole, parts);
     assert_eq!(plan.finish(&whole), plan.finish(&parts));
@@ -402,7 +402,7 @@ fn the_same_seed_gives_the_same_bytes_however_it_is_cut() {
         assert_eq!((next, format!("{sent:?}")), (plan.len(), format!("{whole:?}")), "{n}");
         assert_eq!(plan.answer_of(&sent).unwrap().report, plan.finish(&whole));
     }
-    assert!(plan.answer_of(&plan.evaluate(0..plan.len() - 1, &mut Trains::default())).is_none());
+    assert!(plan.answer_of(&plan.evaluate(0..plan.len() - 1, &mut TrainCache::default())).is_none());
     let again = found(PHYSICAL, &vary, 128, 9);
     assert_eq!(again, plan.finish(&whole));
     assert_ne!(found(PHYSICAL, &vary, 128, 10).outputs, again.outputs);
@@ -429,7 +429,7 @@ fn a_sample_can_be_computed_again() {
     let text = PHYSICAL.to_owned();
     let subject = subject(&text);
     let plan = UncertaintyPlan::new(&subject, &request(&["P1.geometry.roughness=0.3..0.5 um"], 128, 1)).unwrap();
-    let evaluated = plan.evaluate(0..plan.len(), &mut Trains::default());
+    let evaluated = plan.evaluate(0..plan.len(), &mut TrainCache::default());
     let (point, _, values) = plan.samples(&evaluated).nth(17).unwrap();
     let roughness = &plan.settings(point)[0];
     let again = text.replace("0.4 um", roughness);

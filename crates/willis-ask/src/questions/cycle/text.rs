@@ -96,7 +96,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
         );
     }
 
-    let parts = |head: &str, all: &willis::analysis::Named<Energies>| {
+    let parts = |head: &str, all: &willis::analysis::NameMap<Energies>| {
         let mut t = table();
         let (time, energy) = (format!("time {hour}"), ["in", "out", "lost"].map(|w| format!("{w} {joule}")));
         set_header(&mut t, &[head, "rows", &time, "of the time", &energy[0], &energy[1], &energy[2], "lost", "η"]);

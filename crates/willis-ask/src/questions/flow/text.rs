@@ -1,7 +1,7 @@
 //! Power flows for eyes.
 
 use willis::analysis::Verdict;
-use willis::hypergraph::{FlowReport, Hypergraph, MOST_PATHS, Node, NodeKind, OperationFlow, Path, watts};
+use willis::hypergraph::{FlowReport, Hypergraph, MOST_PATHS, Node, NodeKind, OperationFlow, PowerPath, watts};
 
 use crate::style::{
     self, assumptions, bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap,
@@ -180,7 +180,7 @@ fn paths(g: &Hypergraph) -> String {
 }
 
 /// `sun → P1.sun-planet 99.5 % → …`: components by name, contacts with their efficiency.
-fn stations(g: &Hypergraph, p: &Path) -> String {
+fn stations(g: &Hypergraph, p: &PowerPath) -> String {
     let one = |s: &willis::hypergraph::Station| {
         let n = g.node(&s.node)?;
         match n.kind {

@@ -1,7 +1,7 @@
 //! Losses for eyes and as a table.
 
-use willis::analysis::{LossPoint, LossTable, Losses, Named, SolutionReport, Verdict};
-use willis::operating_point::{BearingReport, ContactReport, Regime};
+use willis::analysis::{LossPoint, LossTable, Losses, NameMap, SolutionReport, Verdict};
+use willis::operating_point::{BearingReport, ContactReport, LubricationRegime};
 
 use crate::style::{
     assumptions, band_ends, bar, bold, dim, efficiency_cell, percent, plural, right, rpm, set_header, show,
@@ -49,7 +49,7 @@ pub fn of_solution(s: &SolutionReport) -> String {
     out + &contacts(&s.contacts) + &bearings(&s.bearings)
 }
 
-fn contacts(all: &Named<ContactReport>) -> String {
+fn contacts(all: &NameMap<ContactReport>) -> String {
     if all.is_empty() {
         return String::new();
     }
@@ -86,7 +86,7 @@ fn contacts(all: &Named<ContactReport>) -> String {
             significant(c.pressure_pa / 1e6, 4),
             or_dash(c.film_m.map(|h| h * 1e6), 3),
             or_dash(c.film_ratio, 3),
-            c.regime.map_or("-", Regime::words).into(),
+            c.regime.map_or("-", LubricationRegime::words).into(),
             if c.backlash_m == 0.0 { "0".into() } else { significant(c.backlash_m * 1e6, 3) },
         ]);
     }
@@ -108,7 +108,7 @@ fn contacts(all: &Named<ContactReport>) -> String {
     out
 }
 
-fn bearings(all: &Named<BearingReport>) -> String {
+fn bearings(all: &NameMap<BearingReport>) -> String {
     if all.is_empty() {
         return String::new();
     }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crate::diagnostic::Diagnostics;
 use crate::dynamics::event::Why;
-use crate::dynamics::handles::{Input, InputRefused};
+use crate::dynamics::handles::{InputHandle, InputRefused};
 use crate::dynamics::integrator::Smooth;
 use crate::dynamics::margins::Margin;
 use crate::dynamics::report::{ColumnUnit, EnergyLossKind, Event, Outcome, Recorder};
@@ -92,7 +92,7 @@ impl Simulation {
     /// assert!((state[0] - 3.0).abs() < 1e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn again_with(mut self, inputs: &[(Input, f64)]) -> Result<Self, Diagnostics> {
+    pub fn again_with(mut self, inputs: &[(InputHandle, f64)]) -> Result<Self, Diagnostics> {
         for (input, value) in inputs {
             self.engine.system.set(*input, *value)?;
         }
@@ -100,7 +100,7 @@ impl Simulation {
     }
 
     /// What an input is worth at the time reached.
-    pub fn worth(&mut self, input: Input) -> f64 {
+    pub fn worth(&mut self, input: InputHandle) -> f64 {
         let (t, inside) = (self.t, self.engine.inside);
         let signal = self.engine.system.signal_of(input).clone();
         signal.value(t, inside, &|m| self.engine.member_speed(m))
@@ -111,7 +111,7 @@ impl Simulation {
     ///
     /// # Errors
     /// If the value is not finite, or the time not ahead.
-    pub fn lead(&mut self, input: Input, value: f64, until: f64) -> Result<(), InputRefused> {
+    pub fn lead(&mut self, input: InputHandle, value: f64, until: f64) -> Result<(), InputRefused> {
         let from = self.worth(input);
         if !(value.is_finite() && until.is_finite() && until > self.t) {
             return Err(InputRefused::NotFinite);
@@ -128,7 +128,7 @@ impl Simulation {
     ///
     /// # Errors
     /// If one of them is not finite.
-    pub fn set_moving(&mut self, input: Input, value: f64, rate: f64) -> Result<(), InputRefused> {
+    pub fn set_moving(&mut self, input: InputHandle, value: f64, rate: f64) -> Result<(), InputRefused> {
         if !(value.is_finite() && rate.is_finite()) {
             return Err(InputRefused::NotFinite);
         }

@@ -1,6 +1,6 @@
 use super::{BearingDuty, Law, Palmgren};
 use crate::catalogue::bearing::Kind;
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::{self, Inner, Real};
 
 /// Palmgren's torque with Harris' part for the flanges of axially loaded cylindrical rollers.
@@ -46,7 +46,7 @@ impl Harris {
 }
 
 impl Law for Harris {
-    const META: Meta<BearingDuty<f64>> = Meta {
+    const META: LawInfo<BearingDuty<f64>> = LawInfo {
         id: "harris",
         by: "Harris",
         title: "Harris, Palmgren with flange friction",

@@ -3,7 +3,7 @@ use num_dual::DualNum;
 use super::skf::{Mm, rpm};
 use super::{BearingDuty, Law, Supply, pow};
 use crate::catalogue::bearing::Kind;
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::{self, Inner, Real};
 
 /// Frictional torque of a rolling bearing after Palmgren: a part of the oil and a part of the load.
@@ -65,7 +65,7 @@ impl Palmgren {
 }
 
 impl Law for Palmgren {
-    const META: Meta<BearingDuty<f64>> = Meta {
+    const META: LawInfo<BearingDuty<f64>> = LawInfo {
         id: "palmgren",
         by: "Palmgren",
         title: "Palmgren (Eschmann, ISO/TR 14179-2, ISO 15312)",

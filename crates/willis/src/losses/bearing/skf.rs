@@ -1,9 +1,9 @@
 use num_dual::{DualNum, DualStruct};
 
 use super::{BearingDuty, Law, Supply, pow};
-use crate::catalogue::bearing::{Data, Kind, Seal, SealKind, SkfConstants};
+use crate::catalogue::bearing::{BearingData, Kind, Seal, SealKind, SkfConstants};
 use crate::catalogue::oil::Base;
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::{self, Inner, Real};
 
 /// Frictional torque of a rolling bearing after SKF (catalogues of 2013 and 2018).
@@ -148,7 +148,7 @@ impl Skf {
 }
 
 impl Law for Skf {
-    const META: Meta<BearingDuty<f64>> = Meta {
+    const META: LawInfo<BearingDuty<f64>> = LawInfo {
         id: "skf",
         by: "SKF",
         title: "SKF model of 2013 and 2018",
@@ -201,7 +201,7 @@ pub(super) struct Mm<D> {
 }
 
 impl<D: Real> Mm<D> {
-    pub fn of(bearing: &Data<D>) -> Self {
+    pub fn of(bearing: &BearingData<D>) -> Self {
         let (d, big_d, b) = (bearing.bore * 1e3, bearing.outside_diameter * 1e3, bearing.width * 1e3);
         Self { d, big_d, b, dm: (d + big_d) * 0.5 }
     }

@@ -2,7 +2,7 @@ use num_dual::DualNum;
 
 use super::skf::{Mm, Turning, interpolate, rpm};
 use super::{BearingDuty, Law, Parts, Supply};
-use crate::losses::{Meta, Tag, Trust};
+use crate::losses::{LawInfo, Tag, Trust};
 use crate::real::{Inner, Real, min};
 
 /// Frictional torque of a rolling bearing after SKF's general catalogue 6000, with its old drag.
@@ -90,7 +90,7 @@ impl Skf6000 {
 }
 
 impl Law for Skf6000 {
-    const META: Meta<BearingDuty<f64>> = Meta {
+    const META: LawInfo<BearingDuty<f64>> = LawInfo {
         id: "skf-6000",
         by: "SKF 6000",
         title: "SKF general catalogue 6000, superseded",

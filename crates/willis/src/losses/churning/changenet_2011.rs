@@ -1,5 +1,5 @@
 use super::{ImmersedGear, Law};
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::{Real, acos, min};
 
 /// Churning of one gear in an oil sump after Changenet, Leprince, Ville and Velex (2011).
@@ -61,14 +61,14 @@ impl Changenet2011 {
 }
 
 impl Law for Changenet2011 {
-    const META: Meta<ImmersedGear<f64>> = Meta {
+    const META: LawInfo<ImmersedGear<f64>> = LawInfo {
         id: "changenet-2011",
         by: "Changenet 2011",
         title: "Changenet and others 2011, four regimes",
         source: ("changenet2011", "four regimes"),
         trust: Trust::Seen,
         tags: &[],
-        valid: &[Range {
+        valid: &[ValidityRange {
             symbol: "h/D",
             unit: "-",
             min: 0.1,

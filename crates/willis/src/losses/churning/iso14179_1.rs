@@ -1,5 +1,5 @@
 use super::{ImmersedGear, Law};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::{Real, abs, clamp, max};
 
 /// Churning of one gear in an oil sump after ISO/TR 14179-1.
@@ -56,7 +56,7 @@ impl Iso14179p1 {
 }
 
 impl Law for Iso14179p1 {
-    const META: Meta<ImmersedGear<f64>> = Meta {
+    const META: LawInfo<ImmersedGear<f64>> = LawInfo {
         id: "iso-14179-1",
         by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1, oil churning",

@@ -1,5 +1,5 @@
 use super::{Law, OpenPack};
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 use crate::real::Real;
 
 /// Drag of an open pack whose film reaches out to the radius that the supply can fill.
@@ -46,7 +46,7 @@ impl EquivalentRadius {
 }
 
 impl Law for EquivalentRadius {
-    const META: Meta<OpenPack<f64>> = Meta {
+    const META: LawInfo<OpenPack<f64>> = LawInfo {
         id: "equivalent-radius",
         by: "Yuan",
         title: "film out to an equivalent radius",
@@ -54,8 +54,8 @@ impl Law for EquivalentRadius {
         trust: Trust::Confirm("the inertia factor of the source"),
         tags: &[Tag::Estimate],
         valid: &[
-            Range { symbol: "Re", unit: "-", min: 0.0, max: 2000.0, get: super::rivulets::reynolds },
-            Range { symbol: "v", unit: "m/s", min: 0.0, max: 40.0, get: super::rivulets::rim },
+            ValidityRange { symbol: "Re", unit: "-", min: 0.0, max: 2000.0, get: super::rivulets::reynolds },
+            ValidityRange { symbol: "v", unit: "m/s", min: 0.0, max: 40.0, get: super::rivulets::rim },
         ],
     };
 

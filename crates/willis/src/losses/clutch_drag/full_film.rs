@@ -1,5 +1,5 @@
 use super::{Law, OpenPack};
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::Real;
 
 /// Drag of an open pack whose gaps are full of oil: plane shear.
@@ -45,14 +45,14 @@ impl FullFilm {
 }
 
 impl Law for FullFilm {
-    const META: Meta<OpenPack<f64>> = Meta {
+    const META: LawInfo<OpenPack<f64>> = LawInfo {
         id: "full-film",
         by: "",
         title: "gaps full of oil",
         source: ("iqbal2013", "plane shear, section 2"),
         trust: Trust::Derived,
         tags: &[],
-        valid: &[Range {
+        valid: &[ValidityRange {
             symbol: "Q_need/Q",
             unit: "-",
             min: 0.0,

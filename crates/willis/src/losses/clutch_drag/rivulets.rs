@@ -1,5 +1,5 @@
 use super::{Law, OpenPack};
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 use crate::real::Real;
 
 /// Drag of an open pack whose film breaks into rivulets where the plates throw out more oil than is supplied.
@@ -72,7 +72,7 @@ pub(super) fn rim(s: &OpenPack<f64>) -> f64 {
 }
 
 impl Law for Rivulets {
-    const META: Meta<OpenPack<f64>> = Meta {
+    const META: LawInfo<OpenPack<f64>> = LawInfo {
         id: "rivulets",
         by: "",
         title: "film that breaks up outwards",
@@ -80,8 +80,8 @@ impl Law for Rivulets {
         trust: Trust::Derived,
         tags: &[Tag::Estimate],
         valid: &[
-            Range { symbol: "Re", unit: "-", min: 0.0, max: 2000.0, get: reynolds },
-            Range { symbol: "v", unit: "m/s", min: 0.0, max: 40.0, get: rim },
+            ValidityRange { symbol: "Re", unit: "-", min: 0.0, max: 2000.0, get: reynolds },
+            ValidityRange { symbol: "v", unit: "m/s", min: 0.0, max: 40.0, get: rim },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{FilmContact, Law, groups};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Smallest film thickness of a line contact after Dowson and Higginson.
 ///
@@ -58,7 +58,7 @@ impl DowsonHigginson {
 }
 
 impl Law for DowsonHigginson {
-    const META: Meta<FilmContact<f64>> = Meta {
+    const META: LawInfo<FilmContact<f64>> = LawInfo {
         id: "dowson-higginson",
         by: "Dowson–Higginson",
         title: "Dowson–Higginson, smallest thickness",
@@ -66,8 +66,8 @@ impl Law for DowsonHigginson {
         trust: Trust::Seen,
         tags: &[],
         valid: &[
-            Range { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
-            Range { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| DowsonHigginson.eval(s) },
+            ValidityRange { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
+            ValidityRange { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| DowsonHigginson.eval(s) },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{FilmContact, Law, groups};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Smallest film thickness of a line contact after the first form of Dowson and Higginson, as Wang and
 /// others (2020) use it for the regime of lubrication.
@@ -58,7 +58,7 @@ impl DowsonHigginson1966 {
 }
 
 impl Law for DowsonHigginson1966 {
-    const META: Meta<FilmContact<f64>> = Meta {
+    const META: LawInfo<FilmContact<f64>> = LawInfo {
         id: "dowson-higginson-1966",
         by: "Dowson–Higginson 1966",
         title: "Dowson–Higginson, smallest thickness, early form",
@@ -66,8 +66,8 @@ impl Law for DowsonHigginson1966 {
         trust: Trust::Derived,
         tags: &[],
         valid: &[
-            Range { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
-            Range { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| DowsonHigginson1966.eval(s) },
+            ValidityRange { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
+            ValidityRange { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| DowsonHigginson1966.eval(s) },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{FilmContact, Law, groups};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Central film thickness of a line contact after Dowson and Toyoda.
 ///
@@ -56,7 +56,7 @@ impl DowsonToyoda {
 }
 
 impl Law for DowsonToyoda {
-    const META: Meta<FilmContact<f64>> = Meta {
+    const META: LawInfo<FilmContact<f64>> = LawInfo {
         id: "dowson-toyoda",
         by: "Dowson–Toyoda",
         title: "Dowson–Toyoda, central thickness",
@@ -64,8 +64,8 @@ impl Law for DowsonToyoda {
         trust: Trust::Confirm("3.06 and the exponents 0.69, 0.56, −0.10"),
         tags: &[],
         valid: &[
-            Range { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
-            Range { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| DowsonToyoda.eval(s) },
+            ValidityRange { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
+            ValidityRange { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| DowsonToyoda.eval(s) },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{FilmContact, Law, groups};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Central film thickness of a line contact after Grubin.
 ///
@@ -56,7 +56,7 @@ impl Grubin {
 }
 
 impl Law for Grubin {
-    const META: Meta<FilmContact<f64>> = Meta {
+    const META: LawInfo<FilmContact<f64>> = LawInfo {
         id: "grubin",
         by: "Grubin",
         title: "Grubin, central thickness",
@@ -64,8 +64,8 @@ impl Law for Grubin {
         trust: Trust::Seen,
         tags: &[],
         valid: &[
-            Range { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
-            Range { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| Grubin.eval(s) },
+            ValidityRange { symbol: "u", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.mean_speed },
+            ValidityRange { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: |s| Grubin.eval(s) },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{Inlet, Law, slide, thermal_load};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::max;
 
 /// Thinning of the film by shear heating of the inlet after Gupta, Cheng and others.
@@ -62,14 +62,14 @@ fn pressed<D: Real>(s: &Inlet<D>) -> D {
 }
 
 impl Law for GuptaCheng {
-    const META: Meta<Inlet<f64>> = Meta {
+    const META: LawInfo<Inlet<f64>> = LawInfo {
         id: "gupta-cheng",
         by: "Gupta–Cheng",
         title: "Gupta–Cheng, shear heating of the inlet",
         source: ("gupta1992", "thermal reduction, as printed in Arana 2019, Eq. (24)"),
         trust: Trust::Seen,
         tags: &[],
-        valid: &[Range { symbol: "13.2 p_H/E' L^0.42", unit: "-", min: 0.0, max: 0.9, get: pressed }],
+        valid: &[ValidityRange { symbol: "13.2 p_H/E' L^0.42", unit: "-", min: 0.0, max: 0.9, get: pressed }],
     };
 
     fn eval<D: Real>(&self, s: &Inlet<D>) -> D {

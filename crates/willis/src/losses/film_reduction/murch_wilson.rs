@@ -1,6 +1,6 @@
 use super::{Inlet, Law, slide, thermal_load};
 use crate::Real;
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 
 /// Thinning of the film by shear heating of the inlet: Murch and Wilson's, with sliding after Wilson and Sheu.
 ///
@@ -56,7 +56,7 @@ impl MurchWilson {
 }
 
 impl Law for MurchWilson {
-    const META: Meta<Inlet<f64>> = Meta {
+    const META: LawInfo<Inlet<f64>> = LawInfo {
         id: "murch-wilson",
         by: "Murch–Wilson",
         title: "Murch–Wilson, shear heating of the inlet",

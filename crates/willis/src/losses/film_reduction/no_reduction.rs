@@ -1,6 +1,6 @@
 use super::{Inlet, Law};
 use crate::Real;
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 
 /// No thinning of the film: the isothermal thickness is used as it is.
 ///
@@ -38,7 +38,7 @@ impl NoReduction {
 }
 
 impl Law for NoReduction {
-    const META: Meta<Inlet<f64>> = Meta {
+    const META: LawInfo<Inlet<f64>> = LawInfo {
         id: "none",
         by: "",
         title: "No thermal reduction",

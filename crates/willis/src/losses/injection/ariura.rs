@@ -1,5 +1,5 @@
 use super::{JetAtMesh, Law};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::Real;
 
 /// Power by which teeth accelerate the oil of a jet.
@@ -43,7 +43,7 @@ impl Ariura {
 }
 
 impl Law for Ariura {
-    const META: Meta<JetAtMesh<f64>> = Meta {
+    const META: LawInfo<JetAtMesh<f64>> = LawInfo {
         id: "ariura",
         by: "Ariura",
         title: "Ariura: accelerating the oil",

@@ -1,6 +1,6 @@
 use super::{Law, ToothLoad};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::losses::load_sharing::Relief;
 use crate::real::{abs, max, min};
 
@@ -67,7 +67,7 @@ impl Equal {
 }
 
 impl Law for Equal {
-    const META: Meta<ToothLoad<f64>> = Meta {
+    const META: LawInfo<ToothLoad<f64>> = LawInfo {
         id: "equal",
         by: "",
         title: "Equal load per length of contact line (50/50)",
@@ -75,7 +75,7 @@ impl Law for Equal {
         trust: Trust::Derived,
         tags: &[],
         valid: &[
-            Range {
+            ValidityRange {
                 symbol: "e_a + e_b",
                 unit: "-",
                 min: 1.0,

@@ -1,6 +1,6 @@
 use super::{Law, ToothLoad};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::min;
 
 /// Sharing by the stiffness of the teeth: a trapezoid from 1/3 to 2/3 in double contact.
@@ -52,7 +52,7 @@ impl Stiffness {
 }
 
 impl Law for Stiffness {
-    const META: Meta<ToothLoad<f64>> = Meta {
+    const META: LawInfo<ToothLoad<f64>> = LawInfo {
         id: "stiffness",
         by: "",
         title: "By stiffness, trapezoid 1/3 to 2/3",
@@ -60,8 +60,8 @@ impl Law for Stiffness {
         trust: Trust::Confirm("the bounds 1/3 and 2/3"),
         tags: &[],
         valid: &[
-            Range { symbol: "e_a", unit: "-", min: 1.0, max: 2.0, get: |s| s.contact_ratio },
-            Range { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
+            ValidityRange { symbol: "e_a", unit: "-", min: 1.0, max: 2.0, get: |s| s.contact_ratio },
+            ValidityRange { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{Law, ToothLoad};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// The same load at every place of the path: what the face of a helical gear sees on average.
 ///
@@ -42,7 +42,7 @@ impl Uniform {
 }
 
 impl Law for Uniform {
-    const META: Meta<ToothLoad<f64>> = Meta {
+    const META: LawInfo<ToothLoad<f64>> = LawInfo {
         id: "uniform",
         by: "",
         title: "Uniform along the path",
@@ -50,8 +50,8 @@ impl Law for Uniform {
         trust: Trust::Derived,
         tags: &[],
         valid: &[
-            Range { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio },
-            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
+            ValidityRange { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio },
+            ValidityRange { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 

@@ -1,6 +1,6 @@
-use super::{Law, Path};
+use super::{Law, PathOfContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Loss factor after Buckingham and Merritt, as American practice (AGMA, UTS) uses it.
 ///
@@ -36,9 +36,9 @@ use crate::losses::{Meta, Range, Trust};
 /// # Example
 /// 17/22, e = 0.7574, 0.7903, by hand: 0.32760 · (0.57365 + 0.62465)/1.54775 = 0.25364.
 /// ```
-/// # use willis::losses::loss_factor::{BuckinghamMerritt, Law, Path};
-/// assert_eq!(format!("{:.5}", BuckinghamMerritt::DEFAULT.eval(&Path::typical())), "0.25364");
-/// assert!(BuckinghamMerritt::DEFAULT.outside(&Path::typical()).is_empty());
+/// # use willis::losses::loss_factor::{BuckinghamMerritt, Law, PathOfContact};
+/// assert_eq!(format!("{:.5}", BuckinghamMerritt::DEFAULT.eval(&PathOfContact::typical())), "0.25364");
+/// assert!(BuckinghamMerritt::DEFAULT.outside(&PathOfContact::typical()).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuckinghamMerritt;
@@ -49,7 +49,7 @@ impl BuckinghamMerritt {
 }
 
 impl Law for BuckinghamMerritt {
-    const META: Meta<Path<f64>> = Meta {
+    const META: LawInfo<PathOfContact<f64>> = LawInfo {
         id: "buckingham-merritt",
         by: "Buckingham and Merritt",
         title: "Buckingham and Merritt (AGMA, UTS)",
@@ -57,14 +57,14 @@ impl Law for BuckinghamMerritt {
         trust: Trust::Seen,
         tags: &[],
         valid: &[
-            Range { symbol: "beta_b", unit: "rad", min: 0.0, max: 0.0, get: |s| s.base_helix },
-            Range { symbol: "e_1", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] },
-            Range { symbol: "e_2", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[1] },
-            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
+            ValidityRange { symbol: "beta_b", unit: "rad", min: 0.0, max: 0.0, get: |s| s.base_helix },
+            ValidityRange { symbol: "e_1", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] },
+            ValidityRange { symbol: "e_2", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[1] },
+            ValidityRange { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 
-    fn eval<D: Real>(&self, s: &Path<D>) -> D {
+    fn eval<D: Real>(&self, s: &PathOfContact<D>) -> D {
         let [z_1, z_2] = s.teeth;
         let [e_1, e_2] = s.e;
         let u = z_2 / z_1;

@@ -1,7 +1,7 @@
-use super::{Law, Path};
+use super::{Law, PathOfContact};
 use crate::Real;
 use crate::losses::load_sharing::{self, LoadSharing, Slices, ToothLoad};
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::abs;
 
 /// Loss factor by integration along the path of contact with a law of load sharing.
@@ -45,17 +45,17 @@ use crate::real::abs;
 /// By hand, 17/22 spur, e = 0.7574, 0.7903, 50/50: the closed form gives 0.32760/2 · (0.7574² + 0.7903² +
 /// 0.2426² + 0.2097²) = 0.21312.
 /// ```
-/// # use willis::losses::loss_factor::{Integrated, Law, Path};
-/// assert_eq!(format!("{:.5}", Integrated::DEFAULT.eval(&Path::typical())), "0.21312");
-/// assert!(Integrated::DEFAULT.outside(&Path::typical()).is_empty());
+/// # use willis::losses::loss_factor::{Integrated, Law, PathOfContact};
+/// assert_eq!(format!("{:.5}", Integrated::DEFAULT.eval(&PathOfContact::typical())), "0.21312");
+/// assert!(Integrated::DEFAULT.outside(&PathOfContact::typical()).is_empty());
 /// ```
 /// Both tips relieved by the deflection of one pair, down to single contact, L = ε_α − 1: by hand
 /// 2 K (L ε_α/2 − 2 L²/3 + (0.2426² + 0.2097²)/2) = 0.18036.
 /// ```
 /// # use willis::losses::load_sharing::Relief;
-/// # use willis::losses::loss_factor::{Integrated, Law, Path};
-/// let relief = Relief { depth: [1.0; 2], length: [Path::typical().contact_ratio() - 1.0; 2] };
-/// let path = Path { relief, ..Path::typical() };
+/// # use willis::losses::loss_factor::{Integrated, Law, PathOfContact};
+/// let relief = Relief { depth: [1.0; 2], length: [PathOfContact::typical().contact_ratio() - 1.0; 2] };
+/// let path = PathOfContact { relief, ..PathOfContact::typical() };
 /// assert_eq!(format!("{:.5}", Integrated::DEFAULT.eval(&path)), "0.18036");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +80,7 @@ const GAUSS: [(f64, f64); 5] = [
 
 /// Where one of two relieved pairs, a base pitch apart, loses contact: `g(x) − g(x + 1) = ±1`, with the relief of one end or
 /// of both; up to whole base pitches. 0 where there is no such place.
-fn lifts<D: Real>(s: &Path<D>) -> [D; 4] {
+fn lifts<D: Real>(s: &PathOfContact<D>) -> [D; 4] {
     let [from_start, from_end] = [0, 1].map(|k| {
         let (depth, length) = (s.relief.depth[k], s.relief.length[k]);
         if depth.re() > 0.0 && length.re() > 0.0 { (depth, depth / length) } else { (D::zero(), D::zero()) }
@@ -98,14 +98,14 @@ fn lifts<D: Real>(s: &Path<D>) -> [D; 4] {
 }
 
 impl Law for Integrated {
-    const META: Meta<Path<f64>> = Meta {
+    const META: LawInfo<PathOfContact<f64>> = LawInfo {
         id: "integrated",
         by: "",
         title: "Integrated along the path of contact",
         source: ("wimmer2006", "local loss factor H_VL"),
         trust: Trust::Derived,
         tags: &[],
-        valid: &[Range {
+        valid: &[ValidityRange {
             symbol: "e_a + e_b",
             unit: "-",
             min: 1.0,
@@ -114,7 +114,7 @@ impl Law for Integrated {
         }],
     };
 
-    fn eval<D: Real>(&self, s: &Path<D>) -> D {
+    fn eval<D: Real>(&self, s: &PathOfContact<D>) -> D {
         let (e_a, e_b, pitch_point) = (s.contact_ratio(), s.overlap_ratio, s.e[1]);
         if let (true, true, LoadSharing::Equal(_)) = (s.relief.any(), e_b.re() >= 1e-9, self.sharing) {
             let slices = Slices { contact_ratio: e_a, overlap_ratio: e_b, relief: s.relief };

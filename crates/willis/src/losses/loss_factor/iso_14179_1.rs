@@ -1,6 +1,6 @@
-use super::{BuckinghamMerritt, Law, Path};
+use super::{BuckinghamMerritt, Law, PathOfContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Loss factor of ISO/TR 14179-1, the thermal rating that came from AGMA: that of Buckingham and Merritt, with the
 /// helix.
@@ -33,8 +33,8 @@ use crate::losses::{Meta, Range, Trust};
 /// # Example
 /// 17/22 spur, by hand as [`BuckinghamMerritt`]: 0.25364. With β_w = 20°: 0.25364 · 0.88302 = 0.22397.
 /// ```
-/// # use willis::losses::loss_factor::{Iso14179Part1, Law, Path};
-/// let path = Path { operating_helix: 20f64.to_radians(), ..Path::typical() };
+/// # use willis::losses::loss_factor::{Iso14179Part1, Law, PathOfContact};
+/// let path = PathOfContact { operating_helix: 20f64.to_radians(), ..PathOfContact::typical() };
 /// assert_eq!(format!("{:.5}", Iso14179Part1::DEFAULT.eval(&path)), "0.22397");
 /// assert!(Iso14179Part1::DEFAULT.outside(&path).is_empty());
 /// ```
@@ -47,7 +47,7 @@ impl Iso14179Part1 {
 }
 
 impl Law for Iso14179Part1 {
-    const META: Meta<Path<f64>> = Meta {
+    const META: LawInfo<PathOfContact<f64>> = LawInfo {
         id: "iso-14179-1",
         by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1 (AGMA)",
@@ -55,13 +55,13 @@ impl Law for Iso14179Part1 {
         trust: Trust::Confirm("the square of cos β_w"),
         tags: &[],
         valid: &[
-            Range { symbol: "e_1", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] },
-            Range { symbol: "e_2", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[1] },
-            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
+            ValidityRange { symbol: "e_1", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] },
+            ValidityRange { symbol: "e_2", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[1] },
+            ValidityRange { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 
-    fn eval<D: Real>(&self, s: &Path<D>) -> D {
+    fn eval<D: Real>(&self, s: &PathOfContact<D>) -> D {
         BuckinghamMerritt::DEFAULT.eval(s) * s.operating_helix.cos().powi(2)
     }
 }

@@ -1,6 +1,6 @@
-use super::{Law, Path};
+use super::{Law, PathOfContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Loss factor after Ohlendorf, as ISO/TR 14179-2 and the FZG literature use it.
 ///
@@ -34,8 +34,8 @@ use crate::losses::{Meta, Range, Trust};
 /// # Example
 /// 16/24, e = 0.7341, 0.7283, by hand: 0.32725 · (1 − 1.4624 + 0.5389 + 0.5305) = 0.1986.
 /// ```
-/// # use willis::losses::loss_factor::{Law, Ohlendorf, Path};
-/// let path = Path { teeth: [16.0, 24.0], e: [0.7341, 0.728331], ..Path::typical() };
+/// # use willis::losses::loss_factor::{Law, Ohlendorf, PathOfContact};
+/// let path = PathOfContact { teeth: [16.0, 24.0], e: [0.7341, 0.728331], ..PathOfContact::typical() };
 /// assert_eq!(format!("{:.4}", Ohlendorf::DEFAULT.eval(&path)), "0.1986");
 /// assert!(Ohlendorf::DEFAULT.outside(&path).is_empty());
 /// ```
@@ -48,7 +48,7 @@ impl Ohlendorf {
 }
 
 impl Law for Ohlendorf {
-    const META: Meta<Path<f64>> = Meta {
+    const META: LawInfo<PathOfContact<f64>> = LawInfo {
         id: "ohlendorf",
         by: "Ohlendorf",
         title: "Ohlendorf (ISO/TR 14179-2)",
@@ -56,15 +56,15 @@ impl Law for Ohlendorf {
         trust: Trust::Seen,
         tags: &[],
         valid: &[
-            Range { symbol: "e_a", unit: "-", min: 1.0, max: 2.0, get: |s| s.e[0] + s.e[1] },
-            Range { symbol: "e_1", unit: "-", min: 0.0, max: 1.0, get: |s| s.e[0] },
-            Range { symbol: "e_2", unit: "-", min: 0.0, max: 1.0, get: |s| s.e[1] },
-            Range { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
-            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
+            ValidityRange { symbol: "e_a", unit: "-", min: 1.0, max: 2.0, get: |s| s.e[0] + s.e[1] },
+            ValidityRange { symbol: "e_1", unit: "-", min: 0.0, max: 1.0, get: |s| s.e[0] },
+            ValidityRange { symbol: "e_2", unit: "-", min: 0.0, max: 1.0, get: |s| s.e[1] },
+            ValidityRange { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
+            ValidityRange { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 
-    fn eval<D: Real>(&self, s: &Path<D>) -> D {
+    fn eval<D: Real>(&self, s: &PathOfContact<D>) -> D {
         let [e_1, e_2] = s.e;
         (-s.contact_ratio() + 1.0 + e_1 * e_1 + e_2 * e_2) * s.factor()
     }

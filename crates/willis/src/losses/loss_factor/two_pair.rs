@@ -1,6 +1,6 @@
-use super::{Law, Path};
+use super::{Law, PathOfContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::abs;
 
 /// Loss factor in closed form for 50/50 sharing, for addendum contact ratios of any size.
@@ -34,8 +34,8 @@ use crate::real::abs;
 /// Planet 22 in ring 61, e = 0.79035 and 1.16681, by hand: K = π (1/22 − 1/61) = 0.091298,
 /// H = K/2 · (0.62465 + 1.36145 + 0.04395 − 0.02783) = 0.09140.
 /// ```
-/// # use willis::losses::loss_factor::{Law, Path, TwoPair};
-/// let path = Path { teeth: [22.0, 61.0], internal: true, e: [0.79035, 1.16681], ..Path::typical() };
+/// # use willis::losses::loss_factor::{Law, PathOfContact, TwoPair};
+/// let path = PathOfContact { teeth: [22.0, 61.0], internal: true, e: [0.79035, 1.16681], ..PathOfContact::typical() };
 /// assert_eq!(format!("{:.5}", TwoPair::DEFAULT.eval(&path)), "0.09140");
 /// assert!(TwoPair::DEFAULT.outside(&path).is_empty());
 /// ```
@@ -48,7 +48,7 @@ impl TwoPair {
 }
 
 impl Law for TwoPair {
-    const META: Meta<Path<f64>> = Meta {
+    const META: LawInfo<PathOfContact<f64>> = LawInfo {
         id: "two-pair",
         by: "",
         title: "Closed form for 50/50, any addendum contact ratios",
@@ -56,13 +56,13 @@ impl Law for TwoPair {
         trust: Trust::Derived,
         tags: &[],
         valid: &[
-            Range { symbol: "e_a", unit: "-", min: 1.0, max: 2.0, get: |s| s.e[0] + s.e[1] },
-            Range { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
-            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
+            ValidityRange { symbol: "e_a", unit: "-", min: 1.0, max: 2.0, get: |s| s.e[0] + s.e[1] },
+            ValidityRange { symbol: "e_b", unit: "-", min: 0.0, max: 0.0, get: |s| s.overlap_ratio },
+            ValidityRange { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 
-    fn eval<D: Real>(&self, s: &Path<D>) -> D {
+    fn eval<D: Real>(&self, s: &PathOfContact<D>) -> D {
         let square = |d: D| d * abs(d);
         let [e_1, e_2] = s.e;
         let sum = square(e_1) + square(e_2) + square(-e_1 + 1.0) + square(-e_2 + 1.0);

@@ -1,6 +1,6 @@
-use super::{Law, Path};
+use super::{Law, PathOfContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::abs;
 
 /// Loss factor of helical gears with the load spread evenly over the path of contact.
@@ -32,15 +32,15 @@ use crate::real::abs;
 /// 35/31 with helix 22°, e = 0.75896, 0.74886, by hand: K = π (1/35 + 1/31)/cos 20.6106° = 0.20417,
 /// H = 0.20417 · 1.13680/1.50781 = 0.15393.
 /// ```
-/// # use willis::losses::loss_factor::{Law, Path, Uniform};
-/// let path = Path {
+/// # use willis::losses::loss_factor::{Law, PathOfContact, Uniform};
+/// let path = PathOfContact {
 ///     teeth: [35.0, 31.0],
 ///     internal: false,
 ///     base_helix: 20.61061429628295f64.to_radians(),
 ///     e: [0.7589558, 0.7488578],
 ///     overlap_ratio: 1.3628,
 ///     operating_helix: 22f64.to_radians(),
-///     ..Path::typical()
+///     ..PathOfContact::typical()
 /// };
 /// assert_eq!(format!("{:.5}", Uniform::DEFAULT.eval(&path)), "0.15393");
 /// assert!(Uniform::DEFAULT.outside(&path).is_empty());
@@ -54,7 +54,7 @@ impl Uniform {
 }
 
 impl Law for Uniform {
-    const META: Meta<Path<f64>> = Meta {
+    const META: LawInfo<PathOfContact<f64>> = LawInfo {
         id: "uniform",
         by: "",
         title: "Uniform load along the path, helical gears",
@@ -62,13 +62,13 @@ impl Law for Uniform {
         trust: Trust::Derived,
         tags: &[],
         valid: &[
-            Range { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio },
-            Range { symbol: "e_a", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] + s.e[1] },
-            Range { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
+            ValidityRange { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio },
+            ValidityRange { symbol: "e_a", unit: "-", min: 0.0, max: f64::INFINITY, get: |s| s.e[0] + s.e[1] },
+            ValidityRange { symbol: "c' C_a b/F_bt", unit: "-", min: 0.0, max: 0.0, get: |s| s.relief.largest() },
         ],
     };
 
-    fn eval<D: Real>(&self, s: &Path<D>) -> D {
+    fn eval<D: Real>(&self, s: &PathOfContact<D>) -> D {
         let [e_1, e_2] = s.e;
         if s.contact_ratio().re() <= 0.0 {
             return D::zero();

@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 use crate::real::min;
 
 /// Mean coefficient that gives the loss estimate of ANSI/AGMA 6011 with the loss factor in force.
@@ -55,7 +55,7 @@ pub(super) fn angle_factor<D: Real>(normal_pressure_angle: D) -> D {
 }
 
 /// Where the estimate is used as it stands.
-pub(super) const ANGLE: Range<MeshContact<f64>> = Range {
+pub(super) const ANGLE: ValidityRange<MeshContact<f64>> = ValidityRange {
     symbol: "α_n",
     unit: "rad",
     min: 14.0 * std::f64::consts::PI / 180.0,
@@ -64,7 +64,7 @@ pub(super) const ANGLE: Range<MeshContact<f64>> = Range {
 };
 
 impl Law for Agma6011 {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "agma-6011",
         by: "AGMA 6011",
         title: "Estimate of ANSI/AGMA 6011",

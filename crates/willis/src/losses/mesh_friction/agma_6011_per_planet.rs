@@ -1,7 +1,7 @@
 use super::agma_6011::{ANGLE, angle_factor};
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Tag, Trust};
+use crate::losses::{LawInfo, Tag, Trust};
 
 /// The estimate of ANSI/AGMA 6011 as Wang and others (2020) applied it: the whole power charged to
 /// every planet, the external factor also for the ring.
@@ -55,7 +55,7 @@ impl Agma6011PerPlanet {
 }
 
 impl Law for Agma6011PerPlanet {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "agma-6011-per-planet",
         by: "AGMA 6011 for every planet",
         title: "AGMA 6011 with the whole power at every planet (Wang 2020)",

@@ -1,7 +1,7 @@
 use super::benedict_kelley::{argument, logarithm};
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 
 /// Friction at one point of a mesh of smooth teeth after Anderson and Loewenthal (NASA TP-1622):
 /// Benedict and Kelley without roughness.
@@ -54,14 +54,14 @@ impl AndersonLoewenthal {
 }
 
 impl Law for AndersonLoewenthal {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "anderson-loewenthal",
         by: "Anderson–Loewenthal",
         title: "Anderson–Loewenthal (NASA TP-1622), smooth teeth",
         source: ("anderson1980", "sliding loss"),
         trust: Trust::Confirm("0.0127 and 29.66"),
         tags: &[Tag::Local, Tag::SlidingOnly],
-        valid: &[Range {
+        valid: &[ValidityRange {
             symbol: "29.66 w/(η v_g v_Σ²)",
             unit: "-",
             min: 10.0,

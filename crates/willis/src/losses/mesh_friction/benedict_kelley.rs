@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 use crate::real::{max, min};
 
 /// Friction at one point of an oil-lubricated rolling and sliding contact after Benedict and Kelley.
@@ -71,7 +71,7 @@ pub(super) fn logarithm<D: Real>(s: &MeshContact<D>) -> D {
 }
 
 impl Law for BenedictKelley {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "benedict-kelley",
         by: "Benedict–Kelley",
         title: "Benedict–Kelley, twin discs in mineral oil",
@@ -79,8 +79,8 @@ impl Law for BenedictKelley {
         trust: Trust::Confirm("0.0127, 3.17e8 and 50 µin in the imperial form, and the end of S"),
         tags: &[Tag::Local, Tag::SlidingOnly],
         valid: &[
-            Range { symbol: "29.66 w/(η v_g v_Σ²)", unit: "-", min: 10.0, max: f64::INFINITY, get: argument },
-            Range { symbol: "S", unit: "m", min: 0.0, max: 0.75e-6, get: |s| s.composite_roughness },
+            ValidityRange { symbol: "29.66 w/(η v_g v_Σ²)", unit: "-", min: 10.0, max: f64::INFINITY, get: argument },
+            ValidityRange { symbol: "S", unit: "m", min: 0.0, max: 0.75e-6, get: |s| s.composite_roughness },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Tag, Trust};
+use crate::losses::{LawInfo, Tag, Trust};
 
 /// One coefficient of friction for every state of the mesh.
 ///
@@ -43,7 +43,7 @@ impl Constant {
 }
 
 impl Law for Constant {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "constant",
         by: "",
         title: "Constant coefficient",

@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Tag, Trust};
+use crate::losses::{LawInfo, Tag, Trust};
 use crate::real::{max, min};
 
 /// Friction at one point by the regime of lubrication: one coefficient for boundary lubrication,
@@ -52,7 +52,7 @@ impl CoulombByRegime {
 }
 
 impl Law for CoulombByRegime {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "coulomb-by-regime",
         by: "Coulomb by film ratio",
         title: "Boundary, mixed or full film by film ratio",

@@ -1,7 +1,7 @@
 use super::{Law, MeshContact};
 use crate::Real;
 use crate::catalogue::oil::Base;
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 
 /// Mean friction of an oil-lubricated steel mesh after Fernandes and others, from the Stribeck and
 /// roughness parameters of the contact.
@@ -63,7 +63,7 @@ impl Fernandes {
 }
 
 impl Law for Fernandes {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "fernandes",
         by: "Fernandes",
         title: "Fernandes, Stribeck and roughness parameters",

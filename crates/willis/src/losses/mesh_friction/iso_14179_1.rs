@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 
 /// Mean friction of a mesh after ISO/TR 14179-1, the thermal rating that came from AGMA, with the tooth loss factor
 /// of that report.
@@ -52,9 +52,9 @@ impl Iso14179Part1 {
 pub(super) const TRUST: Trust = Trust::Confirm("the exponents 0.223, 0.40, 0.70, the divisor 3.239 and the range");
 
 /// Where the report uses the coefficient.
-pub(super) const VALID: &[Range<MeshContact<f64>>] = &[
-    Range { symbol: "v", unit: "m/s", min: 2.0, max: 25.0, get: |s| s.pitch_line_speed },
-    Range { symbol: "K", unit: "Pa", min: 1.4e6, max: 14e6, get: |s| s.k_factor },
+pub(super) const VALID: &[ValidityRange<MeshContact<f64>>] = &[
+    ValidityRange { symbol: "v", unit: "m/s", min: 2.0, max: 25.0, get: |s| s.pitch_line_speed },
+    ValidityRange { symbol: "K", unit: "Pa", min: 1.4e6, max: 14e6, get: |s| s.k_factor },
 ];
 
 /// The coefficient of the report.
@@ -66,7 +66,7 @@ pub(super) fn coefficient<D: Real>(s: &MeshContact<D>) -> D {
 }
 
 impl Law for Iso14179Part1 {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "iso-14179-1",
         by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1 (AGMA)",

@@ -1,7 +1,7 @@
 use super::iso_14179_1::{TRUST, VALID, coefficient};
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::Meta;
+use crate::losses::LawInfo;
 
 /// The coefficient of friction of ISO/TR 14179-1 alone, with the tooth loss factor that is chosen: a mix that no standard
 /// has, to compare the coefficient with those of other laws.
@@ -50,7 +50,7 @@ impl Iso14179Part1Friction {
 }
 
 impl Law for Iso14179Part1Friction {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "iso-14179-1-friction",
         by: "ISO/TR 14179-1, friction only",
         title: "ISO/TR 14179-1 (AGMA), coefficient only",

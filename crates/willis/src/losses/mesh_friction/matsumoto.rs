@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 use crate::real::{max, min};
 
 /// Friction at one point in mixed lubrication after Matsumoto: a share of the load is carried by
@@ -52,14 +52,14 @@ impl Matsumoto {
 }
 
 impl Law for Matsumoto {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "matsumoto",
         by: "Matsumoto",
         title: "Matsumoto, mixed lubrication",
         source: ("matsumoto2014", "share of the asperities, as printed in Arana 2019, Table 1 and Eq. (5)"),
         trust: Trust::Seen,
         tags: &[Tag::Local, Tag::SlidingOnly],
-        valid: &[Range { symbol: "D", unit: "-", min: 1.0, max: 100.0, get: |s| s.peak_roughness / s.film }],
+        valid: &[ValidityRange { symbol: "D", unit: "-", min: 1.0, max: 100.0, get: |s| s.peak_roughness / s.film }],
     };
 
     fn eval<D: Real>(&self, s: &MeshContact<D>) -> D {

@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Mean friction of an oil-lubricated steel mesh after Schlenk (ISO/TR 14179-2).
 ///
@@ -58,7 +58,7 @@ impl Schlenk {
 }
 
 impl Law for Schlenk {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "schlenk",
         by: "Schlenk",
         title: "Schlenk, oil-lubricated steel (ISO/TR 14179-2)",
@@ -66,9 +66,9 @@ impl Law for Schlenk {
         trust: Trust::Seen,
         tags: &[],
         valid: &[
-            Range { symbol: "F_bt/b", unit: "N/m", min: 150e3, max: f64::INFINITY, get: |s| s.line_load },
-            Range { symbol: "v_t", unit: "m/s", min: 0.5, max: 50.0, get: |s| s.pitch_line_speed },
-            Range { symbol: "Ra", unit: "m", min: 0.2e-6, max: 1e-6, get: |s| s.roughness },
+            ValidityRange { symbol: "F_bt/b", unit: "N/m", min: 150e3, max: f64::INFINITY, get: |s| s.line_load },
+            ValidityRange { symbol: "v_t", unit: "m/s", min: 0.5, max: 50.0, get: |s| s.pitch_line_speed },
+            ValidityRange { symbol: "Ra", unit: "m", min: 0.2e-6, max: 1e-6, get: |s| s.roughness },
         ],
     };
 

@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Tag, Trust};
+use crate::losses::{LawInfo, ValidityRange, Tag, Trust};
 use crate::real::max;
 
 /// Friction at one point of a contact in gear oil 75W90 after Xu and Kahraman: a regression of
@@ -64,7 +64,7 @@ impl XuKahraman {
 }
 
 impl Law for XuKahraman {
-    const META: Meta<MeshContact<f64>> = Meta {
+    const META: LawInfo<MeshContact<f64>> = LawInfo {
         id: "xu-kahraman",
         by: "Xu–Kahraman",
         title: "Xu–Kahraman, EHL regression for 75W90",
@@ -72,12 +72,12 @@ impl Law for XuKahraman {
         trust: Trust::Seen,
         tags: &[Tag::Local, Tag::SlidingOnly],
         valid: &[
-            Range { symbol: "p_H", unit: "Pa", min: 0.5e9, max: 2.5e9, get: |s| s.hertz_pressure },
-            Range { symbol: "SR", unit: "-", min: 0.0, max: 1.0, get: |s| s.sliding_speed / (s.sum_speed * 0.5) },
-            Range { symbol: "V", unit: "m/s", min: 1.0, max: 20.0, get: |s| s.sum_speed * 0.5 },
-            Range { symbol: "R", unit: "m", min: 5e-3, max: 80e-3, get: |s| s.radius },
-            Range { symbol: "S", unit: "m", min: 0.1e-6, max: 0.4e-6, get: |s| s.composite_roughness },
-            Range { symbol: "η", unit: "Pa s", min: 5e-3, max: 20e-3, get: |s| s.dynamic_viscosity },
+            ValidityRange { symbol: "p_H", unit: "Pa", min: 0.5e9, max: 2.5e9, get: |s| s.hertz_pressure },
+            ValidityRange { symbol: "SR", unit: "-", min: 0.0, max: 1.0, get: |s| s.sliding_speed / (s.sum_speed * 0.5) },
+            ValidityRange { symbol: "V", unit: "m/s", min: 1.0, max: 20.0, get: |s| s.sum_speed * 0.5 },
+            ValidityRange { symbol: "R", unit: "m", min: 5e-3, max: 80e-3, get: |s| s.radius },
+            ValidityRange { symbol: "S", unit: "m", min: 0.1e-6, max: 0.4e-6, get: |s| s.composite_roughness },
+            ValidityRange { symbol: "η", unit: "Pa s", min: 5e-3, max: 20e-3, get: |s| s.dynamic_viscosity },
         ],
     };
 

@@ -1,5 +1,5 @@
 use super::{Journal, Law};
-use crate::losses::{Meta, Tag, Trust};
+use crate::losses::{LawInfo, Tag, Trust};
 use crate::real::Real;
 
 /// Torque of a plain bearing without a full film: a coefficient of friction.
@@ -41,7 +41,7 @@ impl Boundary {
 }
 
 impl Law for Boundary {
-    const META: Meta<Journal<f64>> = Meta {
+    const META: LawInfo<Journal<f64>> = LawInfo {
         id: "boundary-friction",
         by: "",
         title: "coefficient of friction",

@@ -1,5 +1,5 @@
 use super::{Journal, Law};
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::{self, Real};
 
 /// Torque of a loaded plain bearing by the theory of short bearings.
@@ -80,7 +80,7 @@ fn eccentric(s: &Journal<f64>) -> f64 {
 }
 
 impl Law for Ocvirk {
-    const META: Meta<Journal<f64>> = Meta {
+    const META: LawInfo<Journal<f64>> = LawInfo {
         id: "ocvirk",
         by: "Ocvirk",
         title: "Ocvirk: short bearing",
@@ -88,8 +88,8 @@ impl Law for Ocvirk {
         trust: Trust::Derived,
         tags: &[],
         valid: &[
-            Range { symbol: "b/d", unit: "-", min: 0.0, max: 1.0, get: narrow },
-            Range { symbol: "ε", unit: "-", min: 0.0, max: 0.95, get: eccentric },
+            ValidityRange { symbol: "b/d", unit: "-", min: 0.0, max: 1.0, get: narrow },
+            ValidityRange { symbol: "ε", unit: "-", min: 0.0, max: 0.95, get: eccentric },
         ],
     };
 

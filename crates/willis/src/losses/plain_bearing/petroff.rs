@@ -1,5 +1,5 @@
 use super::{Journal, Law};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::Real;
 
 /// Torque of a plain bearing whose shaft runs in its middle: the film alone.
@@ -48,7 +48,7 @@ pub(super) fn centred<D: Real>(s: &Journal<D>) -> D {
 }
 
 impl Law for Petroff {
-    const META: Meta<Journal<f64>> = Meta {
+    const META: LawInfo<Journal<f64>> = LawInfo {
         id: "petroff",
         by: "Petroff",
         title: "Petroff: no load",

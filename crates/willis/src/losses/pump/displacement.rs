@@ -1,5 +1,5 @@
 use super::{Law, PumpDuty};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::Real;
 
 /// Torque of a displacement pump by its efficiency.
@@ -41,7 +41,7 @@ impl Displacement {
 }
 
 impl Law for Displacement {
-    const META: Meta<PumpDuty<f64>> = Meta {
+    const META: LawInfo<PumpDuty<f64>> = LawInfo {
         id: "displacement",
         by: "",
         title: "work of a turn over the efficiency",

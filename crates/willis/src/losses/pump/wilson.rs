@@ -1,5 +1,5 @@
 use super::{Law, PumpDuty};
-use crate::losses::{Meta, Tag, Trust};
+use crate::losses::{LawInfo, Tag, Trust};
 use crate::real::Real;
 
 /// Torque of a displacement pump with dry and viscous friction.
@@ -50,7 +50,7 @@ impl Wilson {
 }
 
 impl Law for Wilson {
-    const META: Meta<PumpDuty<f64>> = Meta {
+    const META: LawInfo<PumpDuty<f64>> = LawInfo {
         id: "wilson",
         by: "Wilson",
         title: "Wilson: dry and viscous friction",

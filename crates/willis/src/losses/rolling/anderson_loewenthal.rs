@@ -1,6 +1,6 @@
 use super::{Law, RollingContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Rolling loss of one line of contact after Anderson and Loewenthal (NASA TP-1622): proportional
 /// to the film thickness.
@@ -64,7 +64,7 @@ fn film<D: Real>(s: &RollingContact<D>) -> D {
 }
 
 impl Law for AndersonLoewenthal {
-    const META: Meta<RollingContact<f64>> = Meta {
+    const META: LawInfo<RollingContact<f64>> = LawInfo {
         id: "anderson-loewenthal",
         by: "Anderson–Loewenthal",
         title: "Anderson–Loewenthal (NASA TP-1622)",
@@ -72,8 +72,8 @@ impl Law for AndersonLoewenthal {
         trust: Trust::Confirm("2.051e-7 and the exponents 0.67, −0.067, 0.464"),
         tags: &[],
         valid: &[
-            Range { symbol: "v_Σ", unit: "m/s", min: 0.0, max: 100.0, get: |s| s.sum_speed },
-            Range { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: film },
+            ValidityRange { symbol: "v_Σ", unit: "m/s", min: 0.0, max: 100.0, get: |s| s.sum_speed },
+            ValidityRange { symbol: "h", unit: "m", min: 0.0, max: 3e-6, get: film },
         ],
     };
 

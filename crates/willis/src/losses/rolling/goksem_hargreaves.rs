@@ -1,6 +1,6 @@
 use super::{Law, RollingContact};
 use crate::Real;
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 
 /// Rolling loss of one line of contact after Goksem and Hargreaves: rolling traction of the inlet.
 ///
@@ -62,14 +62,14 @@ impl GoksemHargreaves {
 }
 
 impl Law for GoksemHargreaves {
-    const META: Meta<RollingContact<f64>> = Meta {
+    const META: LawInfo<RollingContact<f64>> = LawInfo {
         id: "goksem-hargreaves",
         by: "Goksem–Hargreaves",
         title: "Goksem–Hargreaves, rolling traction",
         source: ("goksem1978", "rolling traction; Eq. (19) of Aihara 1987"),
         trust: Trust::Confirm("4.318 and the exponents 0.658, 0.0126, and the sum of the speeds in the power"),
         tags: &[],
-        valid: &[Range { symbol: "v_Σ", unit: "m/s", min: 0.0, max: 100.0, get: |s| s.sum_speed }],
+        valid: &[ValidityRange { symbol: "v_Σ", unit: "m/s", min: 0.0, max: 100.0, get: |s| s.sum_speed }],
     };
 
     fn eval<D: Real>(&self, s: &RollingContact<D>) -> D {

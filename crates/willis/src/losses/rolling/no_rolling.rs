@@ -1,6 +1,6 @@
 use super::{Law, RollingContact};
 use crate::Real;
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 
 /// No rolling loss: for laws of friction that contain it.
 ///
@@ -38,7 +38,7 @@ impl NoRolling {
 }
 
 impl Law for NoRolling {
-    const META: Meta<RollingContact<f64>> = Meta {
+    const META: LawInfo<RollingContact<f64>> = LawInfo {
         id: "none",
         by: "",
         title: "No rolling loss",

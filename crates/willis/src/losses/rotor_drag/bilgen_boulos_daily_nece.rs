@@ -1,5 +1,5 @@
 use super::{Drum, Law};
-use crate::losses::{Meta, Tag, Trust};
+use crate::losses::{LawInfo, Tag, Trust};
 use crate::real::{self, Real};
 
 /// Drag of a smooth drum in a housing: its rim after Bilgen and Boulos, its faces after Daily and Nece.
@@ -55,7 +55,7 @@ impl BilgenBoulosDailyNece {
 }
 
 impl Law for BilgenBoulosDailyNece {
-    const META: Meta<Drum<f64>> = Meta {
+    const META: LawInfo<Drum<f64>> = LawInfo {
         id: "bilgen-boulos-daily-nece",
         by: "Bilgen–Boulos and Daily–Nece",
         title: "Bilgen and Boulos (rim), Daily and Nece (faces)",

@@ -1,5 +1,5 @@
 use super::{Law, SealContact, Material};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::Real;
 
 /// Power lost by a lip seal after ISO/TR 14179-1.
@@ -41,7 +41,7 @@ impl Iso14179p1 {
 }
 
 impl Law for Iso14179p1 {
-    const META: Meta<SealContact<f64>> = Meta {
+    const META: LawInfo<SealContact<f64>> = LawInfo {
         id: "iso-14179-1",
         by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1",

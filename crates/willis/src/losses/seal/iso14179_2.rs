@@ -1,5 +1,5 @@
 use super::{Law, SealContact};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::Real;
 
 /// Power lost by a lip seal after Linke (ISO/TR 14179-2).
@@ -41,7 +41,7 @@ impl Iso14179p2 {
 }
 
 impl Law for Iso14179p2 {
-    const META: Meta<SealContact<f64>> = Meta {
+    const META: LawInfo<SealContact<f64>> = LawInfo {
         id: "iso-14179-2",
         by: "ISO/TR 14179-2",
         title: "Linke (ISO/TR 14179-2)",

@@ -1,5 +1,5 @@
 use super::{Law, SealContact};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::{Real, max};
 
 /// Power lost by a lip seal after Simrit (ISO/TR 14179-2), with oil and temperature.
@@ -42,7 +42,7 @@ impl Simrit {
 }
 
 impl Law for Simrit {
-    const META: Meta<SealContact<f64>> = Meta {
+    const META: LawInfo<SealContact<f64>> = LawInfo {
         id: "simrit",
         by: "Simrit",
         title: "Simrit (ISO/TR 14179-2)",

@@ -1,5 +1,5 @@
 use super::{Disc, Law};
-use crate::losses::{Meta, Trust};
+use crate::losses::{LawInfo, Trust};
 use crate::real::Real;
 
 /// Windage of a spur gear after Anderson and Loewenthal, as drag of a rotating disc.
@@ -57,7 +57,7 @@ impl AndersonLoewenthal {
 }
 
 impl Law for AndersonLoewenthal {
-    const META: Meta<Disc<f64>> = Meta {
+    const META: LawInfo<Disc<f64>> = LawInfo {
         id: "anderson-loewenthal",
         by: "Anderson–Loewenthal",
         title: "Anderson and Loewenthal 1980",

@@ -1,5 +1,5 @@
 use super::{Disc, Law};
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::Real;
 
 /// Windage of a large gear in air after Dawson (1984).
@@ -51,14 +51,14 @@ impl Dawson1984 {
 }
 
 impl Law for Dawson1984 {
-    const META: Meta<Disc<f64>> = Meta {
+    const META: LawInfo<Disc<f64>> = LawInfo {
         id: "dawson-1984",
         by: "Dawson 1984",
         title: "Dawson 1984, large gears in air",
         source: ("dawson1984", "windage formula"),
         trust: Trust::Seen,
         tags: &[],
-        valid: &[Range { symbol: "D", unit: "m", min: 0.3, max: 1.16, get: |s| 2.0 * s.root_radius }],
+        valid: &[ValidityRange { symbol: "D", unit: "m", min: 0.3, max: 1.16, get: |s| 2.0 * s.root_radius }],
     };
 
     fn eval<D: Real>(&self, s: &Disc<D>) -> D {

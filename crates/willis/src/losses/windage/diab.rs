@@ -1,5 +1,5 @@
 use super::{Disc, Law};
-use crate::losses::{Meta, Range, Trust};
+use crate::losses::{LawInfo, ValidityRange, Trust};
 use crate::real::{Real, power};
 
 /// Windage of a spur gear after Diab, Ville and Velex, by dimensional analysis.
@@ -49,14 +49,14 @@ impl Diab {
 }
 
 impl Law for Diab {
-    const META: Meta<Disc<f64>> = Meta {
+    const META: LawInfo<Disc<f64>> = LawInfo {
         id: "diab",
         by: "Diab",
         title: "Diab, Ville and Velex 2004",
         source: ("diab2004", "dimensional analysis"),
         trust: Trust::Confirm("all constants and exponents"),
         tags: &[],
-        valid: &[Range { symbol: "omega", unit: "rad/s", min: 0.0, max: 1256.7, get: |s| s.speed }],
+        valid: &[ValidityRange { symbol: "omega", unit: "rad/s", min: 0.0, max: 1256.7, get: |s| s.speed }],
     };
 
     fn eval<D: Real>(&self, s: &Disc<D>) -> D {

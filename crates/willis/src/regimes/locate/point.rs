@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
-use crate::regimes::Choice;
+use crate::regimes::SelectedConfiguration;
 use crate::regimes::arrangement::dot;
 use crate::regimes::setup::{Linked, Setup};
 use crate::train::{MemberId, Train};
@@ -40,8 +40,8 @@ impl<'t> Point<'t> {
     ///
     /// # Errors
     /// Speeds that contradict each other; too few or too many speeds or torques.
-    pub fn new(train: &'t Train, choice: Choice<'t>, given: &Given) -> Result<Self, Diagnostics> {
-        let Choice { state, configuration, terminals, balance, basis: _ } = choice;
+    pub fn new(train: &'t Train, choice: SelectedConfiguration<'t>, given: &Given) -> Result<Self, Diagnostics> {
+        let SelectedConfiguration { state, configuration, terminals, balance, basis: _ } = choice;
         // Planets whose speed is given stay visible.
         let keep: Vec<MemberId> = terminals.iter().copied().chain(given.speeds.iter().map(|(m, _)| *m)).collect();
         let c = Configuration::new(train, &configuration.engaged, &given.held, &keep)

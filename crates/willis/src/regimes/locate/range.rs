@@ -38,9 +38,10 @@ impl Prescribes {
 
 /// How far one prescribed value can change before the regime ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+// The schema keeps the name that is published.
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Range"))]
 #[non_exhaustive]
-pub struct Range {
+pub struct PrescribedRange {
     /// What it is.
     pub quantity: Prescribes,
     /// The member.
@@ -143,7 +144,7 @@ fn little(step: &Rational, next: Option<&Rational>, value: &Rational, up: bool) 
 }
 
 /// How far a speed can go, and what lies behind.
-pub(super) fn speed_range(point: &Point<'_>, around: &Surroundings, here: &State, axis: &SpeedAxis) -> Range {
+pub(super) fn speed_range(point: &Point<'_>, around: &Surroundings, here: &State, axis: &SpeedAxis) -> PrescribedRange {
     let (setup, base) = (&point.setup, &point.base[..]);
     let SpeedAxis { member, value, direction } = axis;
     // Steps along the direction at which a plane is met.
@@ -171,7 +172,7 @@ pub(super) fn speed_range(point: &Point<'_>, around: &Surroundings, here: &State
             efficiency_after: after.iter().map(|s| efficiency_at(setup, &behind, &s.torques).to_f64()).collect(),
         })
     };
-    Range {
+    PrescribedRange {
         quantity: Prescribes::Speed,
         member: setup.c.train.member_name(*member).to_owned(),
         value: value.to_f64() * point.speed_unit,
@@ -181,7 +182,7 @@ pub(super) fn speed_range(point: &Point<'_>, around: &Surroundings, here: &State
 }
 
 /// How far the torque at a position of [`Point::loads`] can go: a force or a terminal torque vanishes at the end.
-pub(super) fn torque_range(point: &Point<'_>, here: &State, n: usize) -> Range {
+pub(super) fn torque_range(point: &Point<'_>, here: &State, n: usize) -> PrescribedRange {
     let (setup, base) = (&point.setup, &point.base[..]);
     let (terminal, value) = &point.loads[n];
     let load_at = |step: &Rational| -> Loads {
@@ -223,7 +224,7 @@ pub(super) fn torque_range(point: &Point<'_>, here: &State, n: usize) -> Range {
             efficiency_after: after.iter().map(|s| efficiency_at(setup, base, &s.torques).to_f64()).collect(),
         })
     };
-    Range {
+    PrescribedRange {
         quantity: Prescribes::Torque,
         member: setup.terminal_name(*terminal).to_owned(),
         value: value.to_f64() * point.torque_unit,

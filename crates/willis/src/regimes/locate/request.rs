@@ -1,7 +1,7 @@
 //! What is asked: an operating point by names, and what they stand for in the train.
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::regimes::{Choice, RegimeSelection, selected_at};
+use crate::regimes::{RegimeSelection, SelectedConfiguration, selected_at};
 use crate::train::{AS_DRAWN, Load, MemberId, Operation, Train};
 use crate::units::Quantity;
 
@@ -53,7 +53,10 @@ impl Given {
 }
 
 /// What a request and its operation prescribe, and the configuration that they name.
-pub(super) fn read<'t>(train: &'t Train, request: &LocateRequest) -> Result<(Given, Choice<'t>), Diagnostics> {
+pub(super) fn read<'t>(
+    train: &'t Train,
+    request: &LocateRequest,
+) -> Result<(Given, SelectedConfiguration<'t>), Diagnostics> {
     let mut errors = Diagnostics::default();
     let mut given = Given::default();
     let mut state = request.state.clone();

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Model;
 use crate::study::axis::Axis;
-use crate::study::question::{Hold, Question, Trains};
+use crate::study::question::{Hold, PointSetup, TrainCache};
 use crate::study::sweep::Sweep;
 use crate::train::Operation;
 use crate::work::{self, Cancelled, Effort, Work};
@@ -204,7 +204,7 @@ pub(super) fn compare(
         };
         let axes: Result<Vec<Axis>, _> = request.over.iter().map(|text| Axis::parse(text, model)).collect();
         let axes = axes.map_err(|d| called((*d).into()))?;
-        let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven);
+        let question = PointSetup::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven);
         sweeps.push(question.and_then(|q| Sweep::new(q, axes, &[])).map_err(called)?);
     }
     let first = &sweeps[0];
@@ -242,7 +242,7 @@ pub(super) fn compare(
     }
     let base: Vec<&Operation> = sweeps.iter().map(|s| s.question().base()).collect();
     // At the first point, so that what an axis sets is the same.
-    let begun = sweeps.iter().zip(variants).map(|(s, v)| match s.ask(0, &mut Trains::default()) {
+    let begun = sweeps.iter().zip(variants).map(|(s, v)| match s.ask(0, &mut TrainCache::default()) {
         Ok((train, operation)) => Some(point(&train, &operation)),
         Err(_) => Some(point(v.1.train(), s.question().base())),
     });
@@ -262,7 +262,7 @@ fn answers(sweeps: &[Sweep<'_>], points: u64, work: &dyn Work) -> Result<Vec<Vec
     const PIECE: u64 = 256;
     work.begin("points", points);
     let parts = work::map(work, points.div_ceil(PIECE) as usize, |k| {
-        let mut trains: Vec<Trains> = sweeps.iter().map(|_| Trains::default()).collect();
+        let mut trains: Vec<TrainCache> = sweeps.iter().map(|_| TrainCache::default()).collect();
         let (from, to) = (k as u64 * PIECE, ((k as u64 + 1) * PIECE).min(points));
         let mut one = |point: u64| -> Vec<Found> {
             let all = sweeps.iter().zip(&mut trains).map(|(s, t)| {

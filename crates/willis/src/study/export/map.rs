@@ -53,7 +53,7 @@ pub struct Gear {
 
 /// An equilibrium of a [`Point`] that can be told as one number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Answer {
+pub struct MapAnswer {
     /// External torque on the output, N m: negative where it drives a load against a positive speed.
     pub output_torque_n_m: f64,
     /// Loss, W.
@@ -76,7 +76,7 @@ pub struct Point {
     /// Why it has no answer, or what stands beside its answer.
     pub reason: Option<String>,
     /// The equilibrium, where there is one that delivers power, or only one.
-    pub answer: Option<Answer>,
+    pub answer: Option<MapAnswer>,
     /// Everything about the equilibrium.
     pub solution: Option<Box<SolutionReport>>,
 }
@@ -149,7 +149,7 @@ impl Gear {
             // One piece: the torque goes through.
             point.verdict = if torque.value.is_zero() { Verdict::Unloaded } else { Verdict::Unique };
             let efficiency = (!torque.value.is_zero()).then_some(1.0);
-            point.answer = Some(Answer { output_torque_n_m: -point.torque_n_m, loss_w: 0.0, efficiency });
+            point.answer = Some(MapAnswer { output_torque_n_m: -point.torque_n_m, loss_w: 0.0, efficiency });
             return Ok(point);
         }
         let operation = Operation {
@@ -201,7 +201,7 @@ impl Gear {
             return;
         };
         let efficiency = solution.efficiency.filter(|_| !solution.all_dissipated && solution.output_power_w > 0.0);
-        point.answer = Some(Answer { output_torque_n_m, loss_w: solution.loss_w, efficiency });
+        point.answer = Some(MapAnswer { output_torque_n_m, loss_w: solution.loss_w, efficiency });
         point.solution = Some(Box::new(solution.clone()));
     }
 

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::study::axis::Axis;
 use crate::study::column::{Column, ColumnTable, Rows};
 use crate::study::compiled::{CompiledSweep, SweepWorkspace};
-use crate::study::question::{Hold, Question, Trains};
+use crate::study::question::{Hold, PointSetup, TrainCache};
 use crate::study::summary::Summary;
 use crate::work::{self, Cancelled, Effort, Work};
 
@@ -215,7 +215,7 @@ impl<'s> SweepPlan<'s> {
                     return Err(wrong);
                 }
                 let (operation, state) = (request.operation.as_deref(), request.state.as_deref());
-                let question = Question::new(model, operation, state, request.hold)?;
+                let question = PointSetup::new(model, operation, state, request.hold)?;
                 let over: Vec<&str> = request.over.iter().map(|o| o.trim()).collect();
                 (Sweep::new(question, axes, &request.columns)?, over.join("\n"))
             }
@@ -276,7 +276,7 @@ impl<'s> SweepPlan<'s> {
     /// # Errors
     /// Why the first point makes none.
     pub fn check(&self) -> Result<(), Diagnostics> {
-        let mut trains = Trains::default();
+        let mut trains = TrainCache::default();
         let mut first = None;
         for k in 0..=4 {
             let point = (self.sweep.len() - 1) * k / 4;

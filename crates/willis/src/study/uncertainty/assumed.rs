@@ -6,7 +6,7 @@ use crate::losses::{self, FAMILIES, Tag};
 use crate::model::Target;
 use crate::study::answer::PointAnswer;
 use crate::study::distribution::{Distribution, Reader};
-use crate::study::question::Question;
+use crate::study::question::PointSetup;
 use crate::train::{LossPart, Measure};
 
 use super::{LawChoice, Uncertain, UncertainValue, listed, nominal};
@@ -22,7 +22,7 @@ const HEAT: f64 = 0.25;
 
 /// The laws of a family that a train can use, in their order; only those inside their range at the operating point if so
 /// asked and two are. And what is to be said of them.
-pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: bool) -> (Vec<String>, String) {
+pub(super) fn laws_of(family: &'static str, question: &PointSetup<'_>, inside: bool) -> (Vec<String>, String) {
     let train = question.model().train();
     let own = losses::entries().into_iter().filter(|e| e.family == family);
     let (wrong, good): (Vec<_>, Vec<_>) = own.partition(|e| e.tags.contains(&Tag::Compatibility));
@@ -62,7 +62,7 @@ pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: boo
 }
 
 /// `--laws`: a family, or all whose choice matters here.
-pub(super) fn laws(family: &str, question: &Question<'_>) -> Result<Vec<(Uncertain, String)>, Box<Diagnostic>> {
+pub(super) fn laws(family: &str, question: &PointSetup<'_>) -> Result<Vec<(Uncertain, String)>, Box<Diagnostic>> {
     let train = question.model().train();
     let one = |family: &'static str| {
         let (laws, told) = laws_of(family, question, true);
@@ -101,7 +101,7 @@ pub(super) fn laws(family: &str, question: &Question<'_>) -> Result<Vec<(Uncerta
 }
 
 /// What is taken as uncertain when nothing is said, with the assumptions.
-pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String>) {
+pub(super) fn quantities(question: &PointSetup<'_>) -> (Vec<Uncertain>, Vec<String>) {
     let model = question.model();
     let (train, document) = (model.train(), model.document());
     let (mut all, mut told) = (vec![], vec![]);

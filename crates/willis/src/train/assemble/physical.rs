@@ -6,7 +6,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 use crate::geometry::hypoid::Hypoid;
 use crate::geometry::{Pair, PairData, Tip, Wheel};
-use crate::losses::loss_factor::Path;
+use crate::losses::loss_factor::PathOfContact;
 use crate::losses::seal::Material;
 use crate::train::assembler::Assembler;
 use crate::train::physical::{
@@ -523,7 +523,7 @@ impl Assembler<'_> {
     /// The efficiency of a mesh under the nominal coefficient of friction, to six decimals, so that
     /// exact results stay readable.
     pub fn nominal_efficiency(&mut self, teeth: &Teeth) -> Efficiency {
-        let loss = self.friction_coefficient * self.laws.loss_factor.eval(&Path::of(&teeth.pair));
+        let loss = self.friction_coefficient * self.laws.loss_factor.eval(&PathOfContact::of(&teeth.pair));
         let along = teeth.hypoid.as_ref().map_or([1.0; 2], |hypoid| {
             hypoid.lengthwise_efficiency(teeth.pair.data.pressure_angle, self.friction_coefficient)
         });

@@ -1,20 +1,39 @@
-//! The equations of the forces in an order in which they are solved one group after the other.
+//! Equations in an order in which they are solved one group after the other.
 //!
 //! A train of many sets is seldom one system: a set in series is loaded by the one before it and loads the next. Rows and
 //! columns are put into block triangular form (a perfect matching, then the strongly connected components of the graph
 //! that it gives: Duff and Reid, ACM Trans. Math. Softw. 4, 1978). The determinant is the product of those of the diagonal
-//! blocks, so each block is certified by itself, and a certificate costs the cube of the largest block, not of the train.
+//! blocks, so each block is certified by itself, a certificate costs the cube of the largest block, not of the train, and a
+//! closed formula is a product of short factors.
 
 /// Rows and columns of a diagonal block.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Block {
+pub(crate) struct Block {
     pub rows: Vec<usize>,
     pub columns: Vec<usize>,
 }
 
+/// Whether putting the rows and columns of all blocks in their order takes an odd number of exchanges.
+pub(crate) fn is_odd(blocks: &[Block]) -> bool {
+    let odd = |order: Vec<usize>| {
+        let mut seen = vec![false; order.len()];
+        // A circle of an even number of places is an odd number of exchanges.
+        (0..order.len()).fold(false, |odd, start| {
+            let (mut at, mut length) = (start, 0);
+            while !std::mem::replace(&mut seen[at], true) {
+                at = order[at];
+                length += 1;
+            }
+            odd ^ (length > 0 && length % 2 == 0)
+        })
+    };
+    odd(blocks.iter().flat_map(|b| b.rows.iter().copied()).collect())
+        != odd(blocks.iter().flat_map(|b| b.columns.iter().copied()).collect())
+}
+
 /// The diagonal blocks of a square system, each after those whose unknowns its equations contain. `rows_of` has the rows
 /// of each column. `None` where no choice of numbers makes the system regular.
-pub(super) fn blocks(rows_of: &[Vec<usize>]) -> Option<Vec<Block>> {
+pub(crate) fn blocks(rows_of: &[Vec<usize>]) -> Option<Vec<Block>> {
     let n = rows_of.len();
     let mut column_of = vec![None; n];
     for start in 0..n {
