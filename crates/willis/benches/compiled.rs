@@ -11,7 +11,9 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
+use willis::compiled::{
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, PowerLoss, ShaftDrag,
+};
 use willis::train::{SetSpec, Train};
 
 fn points(default: usize) -> usize {
@@ -105,6 +107,25 @@ fn map(c: &mut Criterion) {
     let mut sums = [0.0];
     group.bench_function("map-reduced", |b| b.iter(|| efficiency.sum_batch(&input, &mut work, black_box(&mut sums))));
     record("map-reduced", &[("efficiency", sums[0])], n);
+
+    // From a grid: nothing is read, and where a sum is wanted nothing is written.
+    let axis = |low: f64, high: f64, n: usize| -> Vec<f64> {
+        (0..n).map(|k| low + (high - low) * k as f64 / (n - 1) as f64).collect()
+    };
+    let (ws, wc, ts) = (axis(-400.0, 400.0, n.div_ceil(50_000)), axis(-150.5, 150.0, 100), axis(-200.0, 200.0, 500));
+    let (speeds, torques): ([&[f64]; 2], [&[f64]; 1]) = ([&ws, &wc], [&ts]);
+    let grid = GridInputs::new(&speeds, &torques);
+    let mut e = vec![0.5; grid.len()];
+    group.throughput(Throughput::Elements(grid.len() as u64));
+    group.bench_function("map-grid-efficiency", |b| {
+        b.iter(|| efficiency.evaluate_grid(&grid, 0..grid.len(), &mut work, &mut [&mut e[..]]));
+    });
+    record("map-grid-efficiency", &[("efficiency", sum(&e))], grid.len());
+    let mut all = [OutputSummary::default()];
+    group.bench_function("map-grid-reduced", |b| {
+        b.iter(|| efficiency.summarize_grid(&grid, 0..grid.len(), &mut work, black_box(&mut all)));
+    });
+    record("map-grid-reduced", &[("efficiency", all[0].sum)], grid.len());
     group.finish();
 }
 

@@ -31,6 +31,7 @@ mod batch;
 mod grid;
 mod iterated;
 mod kernel;
+mod pairs;
 mod single;
 mod tables;
 

@@ -22,6 +22,8 @@ pub struct Workspace {
     inputs: Vec<[f64; CHUNK]>,
     /// Partial sums of each output.
     sums: Vec<[f64; SUMS]>,
+    /// Torques, loss and efficiency of a power split.
+    single: Vec<[f64; SUM_BLOCK]>,
 }
 
 /// Where the inputs of a batch come from.
@@ -78,6 +80,7 @@ impl CompiledTrain {
             hint: 0,
             inputs: vec![[0.0; CHUNK]; self.speeds + self.torques],
             sums: vec![[0.0; SUMS]; self.outputs.len()],
+            single: vec![[0.0; SUM_BLOCK]; if self.single.is_some() { 4 } else { 0 }],
         }
     }
 
@@ -213,27 +216,30 @@ impl CompiledTrain {
                 single.run(self.arch, w0, w1, &all.torques[0][points], out);
             }
             Source::Grid(layout) => {
-                let mut at = points.start;
-                while at < points.end {
-                    let len = if layout.torque_runs {
-                        let torque = layout.rest_of_row(2, at..points.end);
-                        let speeds = [layout.at(0, at), layout.at(1, at)];
-                        single.run_row(self.arch, speeds, torque, out.take(torque.len()));
-                        torque.len()
-                    } else {
-                        let len = CHUNK.min(points.end - at);
-                        let [torque, w0, w1, ..] = source.given(self, at..at + len, inputs);
-                        single.run(self.arch, w0, w1, torque, out.take(len));
-                        len
-                    };
-                    at += len;
+                if layout.torque_runs {
+                    let mut counters = [0, 1].map(|input| layout.counter(input, points.start));
+                    let mut left = points.len();
+                    let mut torque = layout.rest_of_row(2, points.start);
+                    while left > 0 {
+                        let now = &torque[..torque.len().min(left)];
+                        single.run_row(self.arch, counters.each_ref().map(|c| c.value()), now, out.take(now.len()));
+                        left -= now.len();
+                        counters.iter_mut().for_each(|c| c.advance(now.len()));
+                        torque = layout.row(2);
+                    }
+                    return;
+                }
+                for start in points.clone().step_by(CHUNK) {
+                    let now = start..points.end.min(start + CHUNK);
+                    let [torque, w0, w1, ..] = source.given(self, now.clone(), inputs);
+                    single.run(self.arch, w0, w1, torque, out.take(now.len()));
                 }
             }
         }
     }
 
-    /// A chunk of points into the arrays of the chunk, at least what is wanted.
-    fn into_chunk(
+    /// A few points into the arrays of the workspace, at least what is wanted.
+    fn into_work(
         &self,
         source: Source<'_, '_>,
         points: Range<usize>,
@@ -241,11 +247,18 @@ impl CompiledTrain {
         wanted: &[Column],
     ) -> usize {
         let n = points.len();
-        let Workspace { chunk, hint, inputs, .. } = work;
+        let Workspace { chunk, hint, inputs, single: own, .. } = work;
         match &self.single {
             Some(single) => {
-                let out = chunk.single_out(n, |c| wanted.contains(c));
-                self.run_single(single, source, points, inputs, out);
+                let [first, second, loss, efficiency] = &mut own[..] else { unreachable!("one for each result") };
+                let is = |c: Column| wanted.contains(&c);
+                let torque = [
+                    is(Column::Linear(0)).then_some(&mut first[..n]),
+                    is(Column::Linear(1)).then_some(&mut second[..n]),
+                ];
+                let loss = is(Column::Loss).then_some(&mut loss[..n]);
+                let efficiency = is(Column::Efficiency).then_some(&mut efficiency[..n]);
+                self.run_single(single, source, points, inputs, SingleOut { torque, loss, efficiency });
                 0
             }
             None => {
@@ -298,21 +311,26 @@ impl CompiledTrain {
     ) -> usize {
         let wanted = &self.outputs[..out.len()];
         let mut odd = 0;
-        let mut own = [0.0; CHUNK];
         work.sums.fill([0.0; SUMS]);
-        for start in points.clone().step_by(CHUNK) {
-            let now = start..points.end.min(start + CHUNK);
-            let n = now.len();
-            odd += self.into_chunk(source, now.clone(), work, wanted);
+        // Rows are cut as seldom as can be.
+        let step = if self.single.is_some() { SUM_BLOCK } else { CHUNK };
+        for start in points.clone().step_by(step) {
+            let now = start..points.end.min(start + step);
+            odd += self.into_work(source, now.clone(), work, wanted);
             for (k, (c, o)) in wanted.iter().zip(&mut *out).enumerate() {
-                let values = match *c {
+                match *c {
                     Column::Input(i) => {
-                        source.torque(self, i, now.clone(), &mut own[..n]);
-                        &own[..n]
+                        let mut own = [0.0; SUM_BLOCK];
+                        let own = &mut own[..now.len()];
+                        source.torque(self, i, now.clone(), own);
+                        o.take_in(self.arch, own, start, &mut work.sums[k]);
                     }
-                    _ => work.chunk.column(c, n),
-                };
-                o.take_in(self.arch, values, start, &mut work.sums[k]);
+                    _ => {
+                        let Workspace { chunk, single, sums, .. } = &mut *work;
+                        let values = self.in_work(chunk, single, c, now.len());
+                        o.take_in(self.arch, values, start, &mut sums[k]);
+                    }
+                }
             }
         }
         for (o, sums) in out.iter_mut().zip(&work.sums) {
@@ -333,15 +351,25 @@ impl CompiledTrain {
         for start in (0..n).step_by(CHUNK) {
             let range = start..n.min(start + CHUNK);
             let len = range.len();
-            odd += self.into_chunk(Source::Arrays(points), range.clone(), work, &self.outputs);
+            odd += self.into_work(Source::Arrays(points), range.clone(), work, &self.outputs);
             for (sum, c) in sums.iter_mut().zip(&self.outputs) {
                 *sum += match *c {
                     Column::Input(i) => kernel::sum(self.arch, &points.torques[i][range.clone()]),
-                    _ => kernel::sum(self.arch, work.chunk.column(c, len)),
+                    _ => kernel::sum(self.arch, self.in_work(&work.chunk, &work.single, c, len)),
                 };
             }
         }
         odd
+    }
+
+    /// An output that is in the arrays of the workspace.
+    fn in_work<'w>(&self, chunk: &'w Chunk, single: &'w [[f64; SUM_BLOCK]], c: &Column, len: usize) -> &'w [f64] {
+        match *c {
+            Column::Linear(i) if self.single.is_some() => &single[i][..len],
+            Column::Loss if self.single.is_some() => &single[2][..len],
+            Column::Efficiency if self.single.is_some() => &single[3][..len],
+            _ => chunk.column(c, len),
+        }
     }
 
     fn needs_power(&self) -> bool {
@@ -385,16 +413,5 @@ impl Chunk {
             Column::Efficiency => &self.efficiency[..len],
             Column::Input(_) => unreachable!("handed through by the caller"),
         }
-    }
-
-    /// The arrays of what is wanted of a power split.
-    fn single_out(&mut self, len: usize, wanted: impl Fn(&Column) -> bool) -> SingleOut<'_> {
-        let mut torque = [None, None];
-        for (i, (slot, own)) in torque.iter_mut().zip(&mut self.linear).enumerate() {
-            *slot = wanted(&Column::Linear(i)).then_some(&mut own[..len]);
-        }
-        let loss = wanted(&Column::Loss).then_some(&mut self.loss[..len]);
-        let efficiency = wanted(&Column::Efficiency).then_some(&mut self.efficiency[..len]);
-        SingleOut { torque, loss, efficiency }
     }
 }

@@ -102,11 +102,6 @@ pub(crate) struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    /// The value of an input at a point.
-    pub fn at(&self, input: usize, point: usize) -> f64 {
-        self.values[input][self.position(input, point)]
-    }
-
     fn position(&self, input: usize, point: usize) -> usize {
         point / self.stride[input] % self.values[input].len()
     }
@@ -140,11 +135,46 @@ impl<'a> Layout<'a> {
         values.len() > 1 && fastest && sorted
     }
 
-    /// The values from a point on to the end of its row, or of the points.
-    pub fn rest_of_row(&self, input: usize, points: Range<usize>) -> &'a [f64] {
-        let k = self.position(input, points.start);
-        let values = &self.values[input][k..];
-        &values[..values.len().min(points.len())]
+    /// All values of an input.
+    pub fn row(&self, input: usize) -> &'a [f64] {
+        self.values[input]
+    }
+
+    /// The values of the fastest input from a point on.
+    pub fn rest_of_row(&self, input: usize, point: usize) -> &'a [f64] {
+        &self.values[input][self.position(input, point)..]
+    }
+
+    /// An input at a point, to go on from.
+    pub fn counter(&self, input: usize, point: usize) -> Counter<'a> {
+        let stride = self.stride[input];
+        let at = self.position(input, point);
+        Counter { values: self.values[input], at, stride, left: stride - point % stride }
+    }
+}
+
+/// An input along the points of a grid: counted, because divisions would take as long as the points of a short row.
+pub(crate) struct Counter<'a> {
+    values: &'a [f64],
+    at: usize,
+    stride: usize,
+    /// Points to the next value.
+    left: usize,
+}
+
+impl Counter<'_> {
+    /// The value where it stands.
+    pub fn value(&self) -> f64 {
+        self.values[self.at]
+    }
+
+    /// Goes on by points that all have this value.
+    pub fn advance(&mut self, points: usize) {
+        self.left -= points;
+        if self.left == 0 {
+            self.at = if self.at + 1 == self.values.len() { 0 } else { self.at + 1 };
+            self.left = self.stride;
+        }
     }
 }
 

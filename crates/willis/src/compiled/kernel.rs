@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use super::duty::PointVerdict;
 use super::iterated::{Iterated, Lanes};
+use super::pairs::{Fill, Line, Pair, Shared};
 use super::parts::{CHUNK, MOST_FEATURES, MOST_LINEAR, MOST_MOVING, Parts, Target, TorqueFrom};
 use super::passes::{combine, dot, lane};
 
@@ -15,6 +16,10 @@ use super::passes::{combine, dot, lane};
 const MOST_ELEMENTS: usize = 64;
 /// Patterns tried on whole chunks; other lanes go one by one.
 const RECENT: usize = 4;
+/// So few points are cheaper one by one.
+const FEW: usize = 4;
+/// A multiple of the points that are worked on side by side, whatever the width.
+const VECTORS: usize = 32;
 
 /// A pattern number that means: not found yet.
 const NONE: u64 = u64::MAX;
@@ -53,6 +58,8 @@ pub(super) struct Chunk {
     power_in: [f64; CHUNK],
     speed: [f64; CHUNK],
     recent: [usize; RECENT],
+    /// Linear outputs of points put side by side.
+    compact: Vec<[f64; CHUNK]>,
 }
 
 impl Chunk {
@@ -72,6 +79,7 @@ impl Chunk {
             power_in: [0.0; CHUNK],
             speed: [0.0; CHUNK],
             recent: [0, last, last, last],
+            compact: many(g.p.linear),
         }
     }
 }
@@ -372,7 +380,10 @@ impl General {
         let x = &inputs[..self.features];
         let odd = match &self.iterated {
             Some(iterated) => iterated.chunk(arch, x, l..l + d, range.clone(), &mut w.lanes, &mut w.linear, &mut to),
-            None => self.patterns(arch, x, range.clone(), w, hint, &mut to),
+            None => match self.in_pairs(arch, x, range.clone(), w, hint, &mut to) {
+                Some(odd) => odd,
+                None => self.patterns(arch, x, range.clone(), w, hint, &mut to),
+            },
         };
         if to.powers {
             w.loss[..n].fill(0.0);
@@ -390,6 +401,162 @@ impl General {
             arch.dispatch(Efficiency { loss, power_in, out: &mut w.efficiency[..n] });
         }
         w.signs = signs;
+        odd
+    }
+
+    /// Linear outputs of a chunk of a train whose only speed keeps its sign, most points by two patterns at a time.
+    /// Nothing where the chunk is not of that kind.
+    fn in_pairs(
+        &self,
+        arch: pulp::Arch,
+        x: &[&[f64]],
+        range: Range<usize>,
+        w: &mut Chunk,
+        hint: &mut usize,
+        to: &mut Target<'_, '_>,
+    ) -> Option<usize> {
+        let inputs = self.p.torques + 1;
+        let plain = self.p.certified && self.p.speeds == 1 && self.p.signs.len() <= 1;
+        if !plain || self.features != inputs + self.p.signs.len() || !self.axis.iter().all(Option::is_some) {
+            return None;
+        }
+        let speed = x[self.p.torques];
+        let direction = if speed[0] > 0.0 { 1.0 } else { -1.0 };
+        if !arch.dispatch(KeepsSign { x: speed, direction }) {
+            return None;
+        }
+        match inputs {
+            1 => Some(self.pairs::<1>(arch, x, direction, range, w, hint, to)),
+            2 => Some(self.pairs::<2>(arch, x, direction, range, w, hint, to)),
+            3 => Some(self.pairs::<3>(arch, x, direction, range, w, hint, to)),
+            _ => None,
+        }
+    }
+
+    /// The rows of two patterns, where the speed has this direction.
+    fn pair<const F: usize>(&self, patterns: [usize; 2], direction: f64) -> Option<Pair<F>> {
+        let sign = match self.p.signs.first() {
+            Some(row) => sign(row[0]) * direction,
+            None => 1.0,
+        };
+        let [a, b] = patterns.map(|p| self.forces[p].as_ref());
+        let (a, b) = (a?, b?);
+        let mut pair = Pair {
+            fits: [[Line::NONE; 2]; MOST_MOVING],
+            moving: self.moving.len(),
+            outputs: [[Line::NONE; 2]; MOST_LINEAR],
+            linear: self.p.linear,
+        };
+        for bit in 0..self.moving.len() {
+            let factor = self.axis[bit].map_or(1.0, |a| a.1) * direction;
+            for (p, (pattern, row)) in patterns.iter().zip([&a[bit], &b[bit]]).enumerate() {
+                let side = if pattern >> bit & 1 == 1 { -factor } else { factor };
+                let line = Line::new(row, sign);
+                pair.fits[bit][p] = if side < 0.0 { line.negative() } else { line };
+            }
+        }
+        for (o, slot) in pair.outputs[..self.p.linear].iter_mut().enumerate() {
+            *slot = patterns.map(|p| Line::new(&self.table[p][o], sign));
+        }
+        Some(pair)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "those of a chunk, taken apart")]
+    fn pairs<const F: usize>(
+        &self,
+        arch: pulp::Arch,
+        x: &[&[f64]],
+        direction: f64,
+        range: Range<usize>,
+        w: &mut Chunk,
+        hint: &mut usize,
+        to: &mut Target<'_, '_>,
+    ) -> usize {
+        let n = range.len();
+        let Chunk { linear, recent, compact, .. } = w;
+        let mut own = [0usize; RECENT];
+        // All outputs at once: in the caller's slices where there are any, else in the chunk's own.
+        let mut slots: [&mut [f64]; MOST_LINEAR] = std::array::from_fn(|_| Default::default());
+        for (o, array) in linear.iter_mut().enumerate() {
+            if to.out.is_empty() || to.column[o].is_none() {
+                slots[o] = &mut array[..n];
+            }
+        }
+        for (k, out) in to.out.iter_mut().enumerate() {
+            if let Some(o) = to.column.iter().position(|c| *c == Some(k)) {
+                slots[o] = &mut out[range.clone()];
+            }
+        }
+        let inputs: [&[f64]; F] = std::array::from_fn(|k| x[k]);
+        let mut shared = Shared { taken: [0; 2], left: [0; CHUNK], open: 0 };
+        let known = |shared: &mut Shared, inputs, out: &mut [&mut [f64]], patterns| {
+            let pair = self.pair::<F>(patterns, direction)?;
+            arch.dispatch(Fill { x: inputs, pair: &pair, out, shared });
+            Some(shared.taken)
+        };
+        match known(&mut shared, inputs, &mut slots, [recent[0], recent[1]]) {
+            Some(taken) => own[..2].copy_from_slice(&taken),
+            None => {
+                shared.open = n;
+                shared.left.iter_mut().enumerate().for_each(|(i, lane)| *lane = i as u16);
+            }
+        }
+        // Points that are left are put side by side and tried with two more patterns.
+        let mut rest = shared.open;
+        let mut lanes = shared.left;
+        if rest > FEW {
+            let wide = rest.next_multiple_of(VECTORS).min(CHUNK);
+            let mut given = [[0.0; CHUNK]; F];
+            for (given, x) in given.iter_mut().zip(inputs) {
+                given.iter_mut().zip(&lanes[..rest]).for_each(|(g, lane)| *g = x[usize::from(*lane)]);
+                let last = given[rest - 1];
+                given[rest..wide].fill(last);
+            }
+            let inputs = given.each_ref().map(|g| &g[..wide]);
+            let mut again = Shared { taken: [0; 2], left: [0; CHUNK], open: 0 };
+            let mut side: [&mut [f64]; MOST_LINEAR] = std::array::from_fn(|_| Default::default());
+            side.iter_mut().zip(compact.iter_mut()).for_each(|(slot, array)| *slot = &mut array[..wide]);
+            if known(&mut again, inputs, &mut side, [recent[2], recent[3]]).is_some() {
+                for (slot, values) in slots[..self.p.linear].iter_mut().zip(compact.iter()) {
+                    lanes[..rest].iter().zip(values).for_each(|(lane, x)| slot[usize::from(*lane)] = *x);
+                }
+                // What was filled up is counted too; it only decides which patterns come first.
+                own[2..].copy_from_slice(&again.taken);
+                let still = again.left[..again.open].iter().filter(|i| usize::from(**i) < rest);
+                let mut open = 0;
+                for i in still {
+                    shared.left[open] = lanes[usize::from(*i)];
+                    open += 1;
+                }
+                (rest, lanes) = (open, shared.left);
+            }
+        }
+        // What none of them fits goes one by one, and may bring a new pattern in.
+        let mut odd = 0;
+        let mut one = [0.0; MOST_FEATURES];
+        let mut relative = [0.0; MOST_MOVING];
+        for i in lanes[..rest].iter().map(|i| usize::from(*i)) {
+            one.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
+            let speed = x[F - 1][i];
+            relative.iter_mut().zip(&self.axis).for_each(|(s, a)| *s = a.map_or(0.0, |a| speed * a.1));
+            let (verdict, pattern) = self.find(&one[..self.features], &relative[..self.moving.len()], *hint);
+            odd += usize::from(verdict != PointVerdict::Unique);
+            if let Some(p) = pattern {
+                *hint = p;
+                if let Some(k) = recent.iter().position(|r| *r == p) {
+                    own[k] += 1;
+                }
+            }
+            for (o, slot) in slots[..self.p.linear].iter_mut().enumerate() {
+                slot[i] = pattern.map_or(f64::NAN, |p| dot(&self.table[p][o], &one[..self.features]));
+            }
+        }
+        let mut common: [(usize, usize); RECENT] = std::array::from_fn(|k| (own[k], recent[k]));
+        common.sort_unstable_by(|a, b| b.cmp(a));
+        *recent = common.map(|(_, pattern)| pattern);
+        if rest > FEW && !recent.contains(hint) {
+            recent[RECENT - 1] = *hint;
+        }
         odd
     }
 
@@ -584,6 +751,15 @@ lanes! {
             worst[i] = if first || g < worst[i] { g } else { worst[i] };
         }
     }
+    /// Whether all are on one side of zero, and not so near it that a product with them could vanish.
+    KeepsSign<'a> { x: &'a [f64], direction: f64 } -> bool {
+        const CLEAR: f64 = 1e-100;
+        let mut all = true;
+        for x in x {
+            all &= *x * direction > CLEAR;
+        }
+        all
+    }
     /// Speeds become their signs.
     Signs<'a> { x: &'a mut [f64] } -> () {
         for x in x {
@@ -644,19 +820,17 @@ lanes! {
     /// NaN is in the sums alone.
     Add<'a> { x: &'a [f64], sum: &'a mut [f64; SUMS], least: f64, most: f64 } -> Option<[f64; 2]> {
         let (chunks, rest) = x.as_chunks::<SUMS>();
-        let mut own = *sum;
-        let (mut below, mut above) = ([least; SUMS], [most; SUMS]);
+        let (mut own, mut below, mut above) = (*sum, [least; SUMS], [most; SUMS]);
         for c in chunks {
-            for k in 0..SUMS {
-                own[k] += c[k];
-                below[k] = if c[k] < below[k] { c[k] } else { below[k] };
-                above[k] = if c[k] > above[k] { c[k] } else { above[k] };
-            }
+            add_one(&mut own, &mut below, &mut above, c, c);
         }
-        for (k, x) in rest.iter().enumerate() {
-            own[k] += x;
-            below[k] = if *x < below[k] { *x } else { below[k] };
-            above[k] = if *x > above[k] { *x } else { above[k] };
+        if !rest.is_empty() {
+            // An index that the compiler does not know would keep the sums out of registers. What is left is filled up
+            // with what changes no sum, -0, and no extreme, NaN.
+            let (mut last, mut extremes) = ([-0.0; SUMS], [f64::NAN; SUMS]);
+            last[..rest.len()].copy_from_slice(rest);
+            extremes[..rest.len()].copy_from_slice(rest);
+            add_one(&mut own, &mut below, &mut above, &last, &extremes);
         }
         *sum = own;
         let mut found = 0u64;
@@ -726,6 +900,22 @@ fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, fi
         }
     }
     by_count!(x.len(), go(arch, x, row, sigma, side, first, worst));
+}
+
+/// One value for each partial sum, and one for the extremes.
+#[inline(always)]
+fn add_one(
+    sum: &mut [f64; SUMS],
+    below: &mut [f64; SUMS],
+    above: &mut [f64; SUMS],
+    x: &[f64; SUMS],
+    extremes: &[f64; SUMS],
+) {
+    for k in 0..SUMS {
+        sum[k] += x[k];
+        below[k] = if extremes[k] < below[k] { extremes[k] } else { below[k] };
+        above[k] = if extremes[k] > above[k] { extremes[k] } else { above[k] };
+    }
 }
 
 /// Partial sums of many points.

@@ -18,9 +18,10 @@ pub(super) struct Single {
     /// Torques of the two open shafts per torque that reaches the set: p drives, q drives, at rest.
     gain: [[f64; 3]; 2],
     drag: [ShaftDrag; 3],
-    /// Place (of the three shafts) of the loaded shaft and of the open ones.
+    /// Place (of the three shafts) of the loaded shaft.
     loaded: usize,
-    open: [usize; 2],
+    /// Whether the open shafts are asked for in the other order than that of their places, in which they are kept.
+    swapped: bool,
 }
 
 /// Where the results of [`Single`] go.
@@ -101,6 +102,20 @@ impl Row {
         let finite = l.abs() < FINITE && a.abs() < FINITE && b.abs() < FINITE;
         entering | driving | bit(!finite, UNSURE)
     }
+
+    /// The signs at the ends of the stretches of a chunk.
+    #[inline(always)]
+    fn signs_of(&self, torque: &[f64]) -> [u64; ENDS] {
+        let [first, last] = [torque.first(), torque.last()].map(|t| self.signs(t.copied().unwrap_or(0.0)));
+        if first == last {
+            return [first; ENDS];
+        }
+        let mut ends = [0.0; ENDS];
+        ends.iter_mut().zip(torque.iter().step_by(STRETCH)).for_each(|(e, t)| *e = *t);
+        ends[torque.len().div_ceil(STRETCH)] = torque.last().copied().unwrap_or(0.0);
+        let row = *self;
+        ends.map(|torque| row.signs(torque))
+    }
 }
 
 /// Bits of [`Row::signs`]: powers that enter, the end that drives, and that a power is too large.
@@ -166,13 +181,14 @@ impl Single {
         // Certified: the coefficient has one sign, so the sign of the force is that of the torque.
         let side = force(1.0).signum();
         let gain = [0, 1].map(|o| rho.map(|r| force(r) * (p.per_force[0][0][o] + r * p.per_force[0][1][o])));
+        let swapped = open[0] > open[1];
         Some(Self {
             third: rows[2],
             drive: [element.relative[0] * side, element.relative[1] * side],
-            gain,
+            gain: if swapped { [gain[1], gain[0]] } else { gain },
             drag,
             loaded,
-            open,
+            swapped,
         })
     }
 
@@ -198,25 +214,14 @@ impl Single {
         self.at::<LOADED>(w0, w1).point(torque)
     }
 
-    /// The open shafts in ascending place, as [`Single::point`] numbers them.
-    fn ordered(&self) -> Self {
-        let mut s = *self;
-        if s.open[0] > s.open[1] {
-            s.open.swap(0, 1);
-            s.gain.swap(0, 1);
-        }
-        s
-    }
-
     pub fn run(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], mut out: SingleOut<'_>) {
-        let s = self.ordered();
-        if self.open[0] > self.open[1] {
+        if self.swapped {
             out.torque.swap(0, 1);
         }
-        match s.loaded {
-            0 => s.go::<0>(arch, w0, w1, torque, out),
-            1 => s.go::<1>(arch, w0, w1, torque, out),
-            _ => s.go::<2>(arch, w0, w1, torque, out),
+        match self.loaded {
+            0 => self.go::<0>(arch, w0, w1, torque, out),
+            1 => self.go::<1>(arch, w0, w1, torque, out),
+            _ => self.go::<2>(arch, w0, w1, torque, out),
         }
     }
 
@@ -249,15 +254,14 @@ impl Single {
 
     /// Points at two speeds whose torques run up or down.
     pub fn run_row(&self, arch: pulp::Arch, speeds: [f64; 2], torque: &[f64], mut out: SingleOut<'_>) {
-        let s = self.ordered();
-        if self.open[0] > self.open[1] {
+        if self.swapped {
             out.torque.swap(0, 1);
         }
         let [w0, w1] = speeds;
-        let row = match s.loaded {
-            0 => s.at::<0>(w0, w1),
-            1 => s.at::<1>(w0, w1),
-            _ => s.at::<2>(w0, w1),
+        let row = match self.loaded {
+            0 => self.at::<0>(w0, w1),
+            1 => self.at::<1>(w0, w1),
+            _ => self.at::<2>(w0, w1),
         };
         let mut start = 0;
         while start < torque.len() {
@@ -282,33 +286,26 @@ impl<'o> SingleOut<'o> {
 impl Row {
     fn go(&self, arch: pulp::Arch, torque: &[f64], out: SingleOut<'_>) {
         let row = self;
-        let mut signs = [0; ENDS];
-        let blocks = torque.len().div_ceil(STRETCH);
-        let mut ends = [0.0; ENDS];
-        ends.iter_mut().zip(torque.iter().step_by(STRETCH)).for_each(|(e, t)| *e = *t);
-        ends[blocks] = torque.last().copied().unwrap_or(0.0);
-        arch.dispatch(Signs { row, ends: &ends, signs: &mut signs });
         let SingleOut { torque: [first, second], loss, efficiency } = out;
-        let signs = &signs[..=blocks];
         match (first, second, loss, efficiency) {
             (Some(first), Some(second), Some(loss), Some(efficiency)) => {
-                arch.dispatch(RowAll { row, signs, torque, first, second, loss, efficiency });
+                arch.dispatch(RowAll { row, torque, first, second, loss, efficiency });
             }
             (None, None, Some(loss), Some(efficiency)) => {
-                arch.dispatch(RowPowers { row, signs, torque, loss, efficiency });
+                arch.dispatch(RowPowers { row, torque, loss, efficiency });
             }
             (first, second, loss, efficiency) => {
                 if let Some(out) = first {
-                    arch.dispatch(RowOne::<0> { row, signs, torque, out });
+                    arch.dispatch(RowOne::<0> { row, torque, out });
                 }
                 if let Some(out) = second {
-                    arch.dispatch(RowOne::<1> { row, signs, torque, out });
+                    arch.dispatch(RowOne::<1> { row, torque, out });
                 }
                 if let Some(out) = loss {
-                    arch.dispatch(RowOne::<2> { row, signs, torque, out });
+                    arch.dispatch(RowOne::<2> { row, torque, out });
                 }
                 if let Some(out) = efficiency {
-                    arch.dispatch(RowOne::<3> { row, signs, torque, out });
+                    arch.dispatch(RowOne::<3> { row, torque, out });
                 }
             }
         }
@@ -321,9 +318,9 @@ const STRETCH: usize = 64;
 const ENDS: usize = 16;
 
 /// The stretches of a row: their ranges, and the signs if they are the same at both ends.
-fn stretches(signs: &[u64], len: usize) -> impl Iterator<Item = (std::ops::Range<usize>, Option<u64>)> + '_ {
+fn stretches(signs: &[u64; ENDS], len: usize) -> impl Iterator<Item = (std::ops::Range<usize>, Option<u64>)> + '_ {
     let mut at = 0;
-    let last = signs.len() - 1;
+    let last = len.div_ceil(STRETCH);
     std::iter::from_fn(move || {
         let from = at;
         let sure = |k: usize| {
@@ -343,18 +340,12 @@ fn stretches(signs: &[u64], len: usize) -> impl Iterator<Item = (std::ops::Range
 }
 
 lanes! {
-    /// Signs of the powers at the ends of stretches.
-    Signs<'a> { row: &'a Row, ends: &'a [f64; ENDS], signs: &'a mut [u64; ENDS] } -> () {
-        let row = *row;
-        for k in 0..ENDS {
-            signs[k] = row.signs(ends[k]);
-        }
-    }
     /// Loss and efficiency of a row.
     RowPowers<'a> {
-        row: &'a Row, signs: &'a [u64], torque: &'a [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
+        row: &'a Row, torque: &'a [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
     } -> () {
-        for (range, signs) in stretches(signs, torque.len()) {
+        let signs = row.signs_of(torque);
+        for (range, signs) in stretches(&signs, torque.len()) {
             let torque = &torque[range.clone()];
             let n = torque.len();
             let (loss, efficiency) = (&mut loss[range.clone()][..n], &mut efficiency[range][..n]);
@@ -379,10 +370,11 @@ lanes! {
     }
     /// All results of a row.
     RowAll<'a> {
-        row: &'a Row, signs: &'a [u64], torque: &'a [f64],
+        row: &'a Row, torque: &'a [f64],
         first: &'a mut [f64], second: &'a mut [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
     } -> () {
-        for (range, signs) in stretches(signs, torque.len()) {
+        let signs = row.signs_of(torque);
+        for (range, signs) in stretches(&signs, torque.len()) {
             let torque = &torque[range.clone()];
             let n = torque.len();
             let (first, second) = (&mut first[range.clone()][..n], &mut second[range.clone()][..n]);
@@ -412,9 +404,10 @@ lanes! {
     }
     /// One result of a row: 0 and 1 the torques, 2 the loss, 3 the efficiency.
     RowOne<'a, const WHAT> {
-        row: &'a Row, signs: &'a [u64], torque: &'a [f64], out: &'a mut [f64],
+        row: &'a Row, torque: &'a [f64], out: &'a mut [f64],
     } -> () {
-        for (range, signs) in stretches(signs, torque.len()) {
+        let signs = row.signs_of(torque);
+        for (range, signs) in stretches(&signs, torque.len()) {
             let torque = &torque[range.clone()];
             let n = torque.len();
             let out = &mut out[range][..n];

@@ -214,6 +214,60 @@ fn a_batch_equals_its_points() {
     }
 }
 
+/// In a gear whose input keeps its direction: the same bits for a point alone, in a batch, and wherever in the batch it
+/// stands, whichever of many patterns of drivers it has.
+#[test]
+fn points_of_a_gear_are_the_same_alone_and_in_a_batch() {
+    let n = 1300;
+    let mut random = Uniform(5);
+    for name in ["zf-8hp70", "ford-10r80"] {
+        let train = common::train(name);
+        let [input, output] = [train.input(), train.output()].map(|m| train.member_name(m.unwrap()).to_owned());
+        for (k, state) in train.states().iter().enumerate() {
+            let mut duty = CompileRequest::new([input.as_str()], [input.as_str()])
+                .state(&state.name)
+                .output(CompiledOutput::Torque(output.clone()))
+                .output(CompiledOutput::Loss)
+                .output(CompiledOutput::Efficiency);
+            // Light loads beside drag: the pattern changes with speed.
+            for m in ["input", "output", "c3", "r1"].iter().filter(|m| train.member(m).is_some()) {
+                duty = duty.drag(m, ShaftDrag { coulomb: 0.3, viscous: 2e-3 });
+            }
+            for e in &state.engaged {
+                let name = train.shift_elements()[e.index()].name.clone();
+                let more = duty.clone().output(CompiledOutput::ShiftElementTorque(name));
+                duty = if train.compile(&more).is_ok() { more } else { duty };
+            }
+            let compiled = train.compile(&duty).unwrap();
+            let direction = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let w: Vec<f64> = (0..n).map(|_| direction * random.between(20.0, 500.0)).collect();
+            let t: Vec<f64> = (0..n)
+                .map(|i| match i % 5 {
+                    0 => random.between(-3.0, 3.0),
+                    1 if i % 77 == 1 => 0.0,
+                    2 if i % 100 == 2 => f64::NAN,
+                    _ => random.between(-100.0, 350.0),
+                })
+                .collect();
+            let mut one = vec![0.0; compiled.outputs()];
+            for from in [0, 1, 13, 1290] {
+                let mut work = compiled.workspace();
+                let mut out = vec![vec![0.5; n - from]; compiled.outputs()];
+                let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+                let points = BatchInputs { speeds: &[&w[from..]], torques: &[&t[from..]] };
+                compiled.evaluate_batch(&points, &mut work, &mut slices);
+                for i in 0..n - from {
+                    compiled.evaluate(&[w[from + i]], &[t[from + i]], &mut work, &mut one);
+                    for (o, own) in out.iter().zip(&one) {
+                        let same = o[i] == *own || o[i].is_nan() && own.is_nan();
+                        assert!(same, "{name} {}: {} {}: {} {own}", state.name, w[from + i], t[from + i], o[i]);
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// The arrays that a grid stands for: points in the order of `order`, slowest first.
 fn expanded(values: &[&[f64]], order: &[usize]) -> Vec<Vec<f64>> {
     let points = values.iter().map(|v| v.len()).product();
