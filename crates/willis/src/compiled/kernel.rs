@@ -58,7 +58,8 @@ pub(super) struct Chunk {
     power_in: [f64; CHUNK],
     speed: [f64; CHUNK],
     recent: [usize; RECENT],
-    /// Linear outputs of points put side by side.
+    /// Inputs and linear outputs of points put side by side.
+    given: Vec<[f64; CHUNK]>,
     compact: Vec<[f64; CHUNK]>,
 }
 
@@ -79,6 +80,7 @@ impl Chunk {
             power_in: [0.0; CHUNK],
             speed: [0.0; CHUNK],
             recent: [0, last, last, last],
+            given: many(g.p.torques + g.p.speeds),
             compact: many(g.p.linear),
         }
     }
@@ -473,7 +475,7 @@ impl General {
         to: &mut Target<'_, '_>,
     ) -> usize {
         let n = range.len();
-        let Chunk { linear, recent, compact, .. } = w;
+        let Chunk { linear, recent, given, compact, .. } = w;
         let mut own = [0usize; RECENT];
         // All outputs at once: in the caller's slices where there are any, else in the chunk's own.
         let mut slots: [&mut [f64]; MOST_LINEAR] = std::array::from_fn(|_| Default::default());
@@ -506,13 +508,12 @@ impl General {
         let mut lanes = shared.left;
         if rest > FEW {
             let wide = rest.next_multiple_of(VECTORS).min(CHUNK);
-            let mut given = [[0.0; CHUNK]; F];
             for (given, x) in given.iter_mut().zip(inputs) {
                 given.iter_mut().zip(&lanes[..rest]).for_each(|(g, lane)| *g = x[usize::from(*lane)]);
                 let last = given[rest - 1];
                 given[rest..wide].fill(last);
             }
-            let inputs = given.each_ref().map(|g| &g[..wide]);
+            let inputs = std::array::from_fn(|k| &given[k][..wide]);
             let mut again = Shared { taken: [0; 2], left: [0; CHUNK], open: 0 };
             let mut side: [&mut [f64]; MOST_LINEAR] = std::array::from_fn(|_| Default::default());
             side.iter_mut().zip(compact.iter_mut()).for_each(|(slot, array)| *slot = &mut array[..wide]);

@@ -373,6 +373,11 @@ impl<'s> CompiledSweep<'s> {
         room.inputs.resize_with(own.speeds.len() + own.torques.len(), Vec::new);
         room.outputs.resize_with(own.train.outputs(), Vec::new);
         room.inputs.iter_mut().chain(&mut room.outputs).for_each(|v| v.resize(n, 0.0));
+        if let (Some(grid), Span::Run(from, _)) = (&own.grid, points) {
+            let points = *from as usize..*from as usize + n;
+            let mut outputs: Vec<&mut [f64]> = room.outputs.iter_mut().map(Vec::as_mut_slice).collect();
+            return grid.with(own.speeds.len(), |grid| own.train.evaluate_grid(grid, points, work, &mut outputs));
+        }
         let set = |input: &Input, speeds: &[Vec<f64>], out: &mut [f64]| match input {
             Input::Constant(x) => out.fill(*x),
             Input::Axis(values) => points.axis(&self.sweep, values, out),
