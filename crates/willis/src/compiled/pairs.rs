@@ -95,8 +95,10 @@ impl<const F: usize> pulp::WithSimd for Fill<'_, '_, F> {
             let mut first = [simd.less_than_f64s(one, zero); BLOCK];
             let before = shared.open;
             let mut others = zero;
+            let mut inputs = [[zero; F]; BLOCK];
             for v in (0..len).step_by(WIDE) {
                 let now: [[S::f64s; F]; WIDE] = std::array::from_fn(|u| std::array::from_fn(|k| x[k][v + u]));
+                inputs[v..v + WIDE].copy_from_slice(&now);
                 // The smallest of what must not be negative. NaN is in it only from the first, as everywhere.
                 let mut worst = [[zero; 2]; WIDE];
                 for (row, lines) in fits.iter().enumerate() {
@@ -135,16 +137,12 @@ impl<const F: usize> pulp::WithSimd for Fill<'_, '_, F> {
                 let (by_a, by_b) = (a.by.map(|r| simd.splat_f64s(r)), b.by.map(|r| simd.splat_f64s(r)));
                 let [c_a, c_b] = [a.constant, b.constant].map(|c| simd.splat_f64s(c));
                 if only_first {
-                    for v in 0..len {
-                        let now: [S::f64s; F] = std::array::from_fn(|k| x[k][v]);
-                        out[v] = sum(simd, &now, &by_a, c_a);
-                    }
+                    out.iter_mut().zip(&inputs).for_each(|(out, now)| *out = sum(simd, now, &by_a, c_a));
                     continue;
                 }
-                for v in 0..len {
-                    let now: [S::f64s; F] = std::array::from_fn(|k| x[k][v]);
-                    let by: [S::f64s; F] = std::array::from_fn(|k| simd.select_f64s(first[v], by_a[k], by_b[k]));
-                    out[v] = sum(simd, &now, &by, simd.select_f64s(first[v], c_a, c_b));
+                for ((out, now), first) in out.iter_mut().zip(&inputs).zip(&first) {
+                    let by: [S::f64s; F] = std::array::from_fn(|k| simd.select_f64s(*first, by_a[k], by_b[k]));
+                    *out = sum(simd, now, &by, simd.select_f64s(*first, c_a, c_b));
                 }
             }
             start += len;
