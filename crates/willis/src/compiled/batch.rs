@@ -216,7 +216,8 @@ impl CompiledTrain {
                 single.run(self.arch, w0, w1, &all.torques[0][points], out);
             }
             Source::Grid(layout) => {
-                if layout.torque_runs {
+                // A grid without points has no place to begin at.
+                if layout.torque_runs && !points.is_empty() {
                     let mut counters = [0, 1].map(|input| layout.counter(input, points.start));
                     let mut left = points.len();
                     let mut torque = layout.rest_of_row(2, points.start);

@@ -67,7 +67,7 @@ impl<'a> GridInputs<'a> {
 
     /// How many points: the product of the numbers of values.
     pub fn len(&self) -> usize {
-        self.speeds.iter().chain(self.torques).map(|values| values.len()).product()
+        self.speeds.iter().chain(self.torques).fold(1, |n, values| n.saturating_mul(values.len()))
     }
 
     /// Whether an input has no value.
@@ -85,7 +85,7 @@ impl<'a> GridInputs<'a> {
         for at in (0..inputs).rev() {
             let input = if self.order.is_empty() { at } else { self.order[at] };
             layout.stride[input] = stride;
-            stride *= layout.values[input].len();
+            stride = usize::saturating_mul(stride, layout.values[input].len());
         }
         layout.torque_runs = torques == 1 && layout.is_row(speeds);
         layout

@@ -312,6 +312,12 @@ fn a_grid_is_its_arrays_to_the_last_bit() {
         common::train("zf-8hp70").compile(&eight.clone().output(CompiledOutput::Efficiency)).unwrap(),
         eight_speed([1.0; 4]).compile(&with_laws(eight)).unwrap(),
     ];
+    let nowhere = GridInputs::new(&[&[1.0, 2.0], &[]], &[&[1.0, 2.0]]);
+    assert!(nowhere.is_empty());
+    let mut none = [OutputSummary::default()];
+    assert_eq!(trains[1].evaluate_grid(&nowhere, 0..0, &mut trains[1].workspace(), &mut [&mut []]), 0);
+    assert_eq!(trains[1].summarize_grid(&nowhere, 0..0, &mut trains[1].workspace(), &mut none), 0);
+    assert_eq!((none[0].sum, none[0].min, none[0].max), (0.0, None, None));
     let mut up: Vec<f64> = (0..700).map(|k| -200.0 + 0.57 * f64::from(k)).collect();
     up[351] = 0.0;
     let down: Vec<f64> = up.iter().rev().copied().collect();
