@@ -189,6 +189,51 @@ fn automatic(c: &mut Criterion) {
     group.finish();
 }
 
+/// Every gear of two automatics with drag on the named shafts: torques of all first gears of meshes, of the engaged
+/// elements and at the output. In the last-level cache, and beyond it.
+fn gears(c: &mut Criterion) {
+    let mut group = c.benchmark_group("gears");
+    group.sample_size(10);
+    for (name, text) in [
+        ("8hp70", include_str!("../../../examples/zf-8hp70.toml")),
+        ("10r80", include_str!("../../../examples/ford-10r80.toml")),
+    ] {
+        let train = Train::from_toml(text).unwrap();
+        let [input, output] = [train.input(), train.output()].map(|m| train.member_name(m.unwrap()).to_owned());
+        for state in train.states() {
+            let request = CompileRequest::new([input.as_str()], [input.as_str()]).state(&state.name);
+            let mut request = request.output(CompiledOutput::Torque(output.clone()));
+            // What this gear does not determine is left out.
+            let compiles = |more: &CompileRequest| train.compile(more).is_ok();
+            for member in train.members().iter().skip(1) {
+                let more = request.clone().drag(&member.name, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
+                request = if compiles(&more) { more } else { request };
+            }
+            let meshes = train.meshes().iter().map(|m| CompiledOutput::MeshTorque(m.name.clone()));
+            let engaged = state.engaged.iter().map(|e| train.shift_elements()[e.index()].name.clone());
+            for output in meshes.chain(engaged.map(CompiledOutput::ShiftElementTorque)) {
+                let more = request.clone().output(output);
+                request = if compiles(&more) { more } else { request };
+            }
+            let compiled = train.compile(&request).unwrap();
+            let mut work = compiled.workspace();
+            for (n, size) in [(100_000, "1e5"), (1_000_000, "1e6")] {
+                let mut random = Xorshift::new();
+                let (w, t): (Vec<f64>, Vec<f64>) =
+                    (0..n).map(|_| (80.0 + random.next() * 420.0, -100.0 + random.next() * 450.0)).unzip();
+                let (speeds, torques): ([&[f64]; 1], [&[f64]; 1]) = ([&w], [&t]);
+                let input = BatchInputs { speeds: &speeds, torques: &torques };
+                let mut out = vec![vec![0.5; n]; compiled.outputs()];
+                let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+                group.throughput(Throughput::Elements(n as u64));
+                let task = format!("{name}-{}-{size}", state.name);
+                group.bench_function(task, |b| b.iter(|| compiled.evaluate_batch(&input, &mut work, &mut slices)));
+            }
+        }
+    }
+    group.finish();
+}
+
 /// From text to every ratio and efficiency, driving and coasting, of every gear.
 fn cold(c: &mut Criterion) {
     let mut group = c.benchmark_group("cold");
@@ -229,5 +274,5 @@ fn cold(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, map, automatic, cold);
+criterion_group!(benches, map, automatic, gears, cold);
 criterion_main!(benches);
