@@ -11,7 +11,9 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
+use willis::compiled::{
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, PowerLoss, ShaftDrag,
+};
 use willis::train::{SetSpec, Train};
 
 fn points(default: usize) -> usize {
@@ -105,6 +107,25 @@ fn map(c: &mut Criterion) {
     let mut sums = [0.0];
     group.bench_function("map-reduced", |b| b.iter(|| efficiency.sum_batch(&input, &mut work, black_box(&mut sums))));
     record("map-reduced", &[("efficiency", sums[0])], n);
+
+    // From a grid: nothing is read, and where a sum is wanted nothing is written.
+    let axis = |low: f64, high: f64, n: usize| -> Vec<f64> {
+        (0..n).map(|k| low + (high - low) * k as f64 / (n - 1) as f64).collect()
+    };
+    let (ws, wc, ts) = (axis(-400.0, 400.0, n.div_ceil(50_000)), axis(-150.5, 150.0, 100), axis(-200.0, 200.0, 500));
+    let (speeds, torques): ([&[f64]; 2], [&[f64]; 1]) = ([&ws, &wc], [&ts]);
+    let grid = GridInputs::new(&speeds, &torques);
+    let mut e = vec![0.5; grid.len()];
+    group.throughput(Throughput::Elements(grid.len() as u64));
+    group.bench_function("map-grid-efficiency", |b| {
+        b.iter(|| efficiency.evaluate_grid(&grid, 0..grid.len(), &mut work, &mut [&mut e[..]]));
+    });
+    record("map-grid-efficiency", &[("efficiency", sum(&e))], grid.len());
+    let mut all = [OutputSummary::default()];
+    group.bench_function("map-grid-reduced", |b| {
+        b.iter(|| efficiency.summarize_grid(&grid, 0..grid.len(), &mut work, black_box(&mut all)));
+    });
+    record("map-grid-reduced", &[("efficiency", all[0].sum)], grid.len());
     group.finish();
 }
 
@@ -168,6 +189,51 @@ fn automatic(c: &mut Criterion) {
     group.finish();
 }
 
+/// Every gear of two automatics with drag on the named shafts: torques of all first gears of meshes, of the engaged
+/// elements and at the output. In the last-level cache, and beyond it.
+fn gears(c: &mut Criterion) {
+    let mut group = c.benchmark_group("gears");
+    group.sample_size(10);
+    for (name, text) in [
+        ("8hp70", include_str!("../../../examples/zf-8hp70.toml")),
+        ("10r80", include_str!("../../../examples/ford-10r80.toml")),
+    ] {
+        let train = Train::from_toml(text).unwrap();
+        let [input, output] = [train.input(), train.output()].map(|m| train.member_name(m.unwrap()).to_owned());
+        for state in train.states() {
+            let request = CompileRequest::new([input.as_str()], [input.as_str()]).state(&state.name);
+            let mut request = request.output(CompiledOutput::Torque(output.clone()));
+            // What this gear does not determine is left out.
+            let compiles = |more: &CompileRequest| train.compile(more).is_ok();
+            for member in train.members().iter().skip(1) {
+                let more = request.clone().drag(&member.name, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
+                request = if compiles(&more) { more } else { request };
+            }
+            let meshes = train.meshes().iter().map(|m| CompiledOutput::MeshTorque(m.name.clone()));
+            let engaged = state.engaged.iter().map(|e| train.shift_elements()[e.index()].name.clone());
+            for output in meshes.chain(engaged.map(CompiledOutput::ShiftElementTorque)) {
+                let more = request.clone().output(output);
+                request = if compiles(&more) { more } else { request };
+            }
+            let compiled = train.compile(&request).unwrap();
+            let mut work = compiled.workspace();
+            for (n, size) in [(100_000, "1e5"), (1_000_000, "1e6")] {
+                let mut random = Xorshift::new();
+                let (w, t): (Vec<f64>, Vec<f64>) =
+                    (0..n).map(|_| (80.0 + random.next() * 420.0, -100.0 + random.next() * 450.0)).unzip();
+                let (speeds, torques): ([&[f64]; 1], [&[f64]; 1]) = ([&w], [&t]);
+                let input = BatchInputs { speeds: &speeds, torques: &torques };
+                let mut out = vec![vec![0.5; n]; compiled.outputs()];
+                let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+                group.throughput(Throughput::Elements(n as u64));
+                let task = format!("{name}-{}-{size}", state.name);
+                group.bench_function(task, |b| b.iter(|| compiled.evaluate_batch(&input, &mut work, &mut slices)));
+            }
+        }
+    }
+    group.finish();
+}
+
 /// From text to every ratio and efficiency, driving and coasting, of every gear.
 fn cold(c: &mut Criterion) {
     let mut group = c.benchmark_group("cold");
@@ -208,5 +274,5 @@ fn cold(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, map, automatic, cold);
+criterion_group!(benches, map, automatic, gears, cold);
 criterion_main!(benches);

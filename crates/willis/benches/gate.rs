@@ -11,7 +11,9 @@ use std::path::Path;
 use std::process::Command;
 
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
+use willis::compiled::{
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, PowerLoss, ShaftDrag,
+};
 use willis::dynamics::{Batch, FixedStep, Options, Simulation, simulate};
 use willis::model::Model;
 use willis::regimes::{RegimeSelection, regimes};
@@ -27,6 +29,10 @@ type Task = (&'static str, usize, fn(usize));
 const TASKS: &[Task] = &[
     ("map-all", POINTS, map_all),
     ("map-efficiency", POINTS, map_efficiency),
+    ("map-reduced", POINTS, map_reduced),
+    ("map-grid-efficiency", GRID, map_grid),
+    ("map-grid-reduced", GRID, map_grid_reduced),
+    ("study-map", STUDY, study_map),
     ("automatic-gear-1", POINTS, |n| automatic("1", false, n)),
     ("automatic-gear-5", POINTS, |n| automatic("5", false, n)),
     ("automatic-one-point", POINTS, |n| one_point(false, n)),
@@ -57,6 +63,10 @@ const TASKS: &[Task] = &[
 
 /// Points of one repetition.
 const POINTS: usize = 4096;
+
+/// Points of a grid of two speeds and 500 torques, and of the study of `benches/map.toml` with fewer speeds.
+const GRID: usize = 4 * 2 * 500;
+const STUDY: usize = 20 * 10 * 500;
 
 /// Values on each axis of a grid of points with computed losses.
 const SIDE: usize = 32;
@@ -107,6 +117,55 @@ fn map_all(n: usize) {
         CompiledOutput::Efficiency,
     ];
     run(&power_split(&outputs), &[&w0, &w1], &t, n);
+}
+
+fn map_reduced(n: usize) {
+    let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
+    let compiled = power_split(&[CompiledOutput::Efficiency]);
+    let mut work = compiled.workspace();
+    for _ in 0..n {
+        let points = BatchInputs { speeds: &[&w0, &w1], torques: &[&t] };
+        compiled.sum_batch(&points, &mut work, black_box(&mut [0.0]));
+    }
+}
+
+/// The efficiency over a grid whose torques drive and coast; stored, or its sum and extremes.
+fn over_grid(run: impl Fn(&CompiledTrain, &GridInputs<'_>)) {
+    let torques: Vec<f64> = (0..500).map(|k| -100.0 + 0.8 * f64::from(k)).collect();
+    let compiled = power_split(&[CompiledOutput::Efficiency]);
+    let (sun, carrier) = ([-400.0, -100.0, 200.0, 300.0], [-150.0, 150.0]);
+    run(&compiled, &GridInputs::new(&[&sun, &carrier], &[&torques]));
+}
+
+fn map_grid(n: usize) {
+    over_grid(|compiled, grid| {
+        let (mut work, mut out) = (compiled.workspace(), vec![0.0; GRID]);
+        for _ in 0..n {
+            compiled.evaluate_grid(grid, 0..GRID, &mut work, &mut [black_box(&mut out)]);
+        }
+    });
+}
+
+fn map_grid_reduced(n: usize) {
+    over_grid(|compiled, grid| {
+        let mut work = compiled.workspace();
+        for _ in 0..n {
+            compiled.summarize_grid(grid, 0..GRID, &mut work, black_box(&mut [OutputSummary::default()]));
+        }
+    });
+}
+
+/// The summary of a map as `sweep --fast` makes it.
+fn study_map(n: usize) {
+    let text = include_str!("../../../benches/map.toml");
+    let model = Model::from_toml(text).unwrap();
+    let over = ["sun.speed=-400..800 rad/s:20", "carrier.speed=-150.5..300 rad/s:10", "sun.torque=1..200 N m:500"];
+    let setup = PointSetup::new(&model, None, None, Hold::AsGiven).unwrap();
+    let axes = over.map(|axis| Axis::parse(axis, &model).unwrap()).to_vec();
+    let sweep = Sweep::new(setup, axes, &[]).unwrap().compile().unwrap();
+    for _ in 0..n {
+        black_box(sweep.summary(0, STUDY as u64, &mut Default::default()));
+    }
 }
 
 fn map_efficiency(n: usize) {

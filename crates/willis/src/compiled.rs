@@ -27,8 +27,12 @@ mod duty;
 mod parts;
 #[macro_use]
 mod passes;
+mod batch;
+mod grid;
 mod iterated;
 mod kernel;
+mod pairs;
+mod single;
 mod tables;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -37,10 +41,13 @@ use crate::kinematics::{Configuration, Element};
 use crate::power_flow;
 use crate::train::{FRAME, MemberId, MeshId, ShiftElementId, Train};
 
-use kernel::{Chunk, General, Single};
-use parts::{CHUNK, Law, MOST_FEATURES, MOST_LINEAR, MOST_MOVING, Target};
+use kernel::General;
+use parts::{Law, MOST_FEATURES, MOST_LINEAR, MOST_MOVING};
+use single::Single;
 
+pub use batch::Workspace;
 pub use duty::{BatchInputs, CompileRequest, CompiledOutput, PointVerdict, PowerLoss, ShaftDrag};
+pub use grid::{GridInputs, OutputSummary, PointValue};
 pub use tables::{TableElement, TableMesh, TableOutput, Tables};
 
 /// A train ready to be evaluated at many points.
@@ -67,14 +74,6 @@ enum Column {
     Linear(usize),
     Loss,
     Efficiency,
-}
-
-/// Room for the work on a batch; make it once and use it again.
-#[derive(Clone, Debug)]
-pub struct Workspace {
-    chunk: Chunk,
-    /// The pattern that fitted last.
-    hint: usize,
 }
 
 impl Train {
@@ -613,27 +612,7 @@ enum Linear {
     Tie(ShiftElementId),
 }
 
-/// What is known of many numbers after one pass. NaN is in the sum alone.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Extremes {
-    pub sum: f64,
-    pub least: f64,
-    pub most: f64,
-}
-
-impl Extremes {
-    pub fn of(x: &[f64], arch: pulp::Arch) -> Self {
-        let [sum, least, most] = kernel::extremes(arch, x);
-        Self { sum, least, most }
-    }
-}
-
 impl CompiledTrain {
-    /// Room for evaluation; reuse it.
-    pub fn workspace(&self) -> Workspace {
-        Workspace { chunk: Chunk::new(&self.general), hint: 0 }
-    }
-
     /// Number of results per point.
     pub fn outputs(&self) -> usize {
         self.outputs.len()
@@ -666,108 +645,5 @@ impl CompiledTrain {
             };
         }
         verdict
-    }
-
-    /// Evaluates many points into one slice per output. Returns how many points are not unique.
-    ///
-    /// # Panics
-    /// If a slice has another length than the inputs.
-    pub fn evaluate_batch(&self, points: &BatchInputs<'_>, work: &mut Workspace, out: &mut [&mut [f64]]) -> usize {
-        let n = points.len(self.speeds, self.torques);
-        assert_eq!(out.len(), self.outputs.len(), "one slice for each output of the request");
-        assert!(out.iter().all(|o| o.len() == n), "outputs as long as the inputs");
-        if let Some(single) = &self.single {
-            let mut direct = kernel::SingleOut::default();
-            let mut copies: Vec<usize> = Vec::new();
-            let mut rest = out.iter_mut();
-            // Every quantity is written once, straight to where it was asked for.
-            for (k, c) in self.outputs.iter().enumerate() {
-                let o: &mut [f64] = rest.next().expect("as many as columns");
-                match *c {
-                    Column::Linear(i) if direct.torque[i].is_none() => direct.torque[i] = Some(o),
-                    Column::Loss if direct.loss.is_none() => direct.loss = Some(o),
-                    Column::Efficiency if direct.efficiency.is_none() => direct.efficiency = Some(o),
-                    Column::Input(i) => o.copy_from_slice(points.torques[i]),
-                    _ => copies.push(k),
-                }
-            }
-            single.run(self.arch, points.speeds[0], points.speeds[1], points.torques[0], direct);
-            for k in copies {
-                let from = self.outputs.iter().position(|c| *c == self.outputs[k]).expect("the first of its kind");
-                let (head, tail) = out.split_at_mut(k);
-                tail[0].copy_from_slice(head[from]);
-            }
-            return 0;
-        }
-        let mut odd = 0;
-        let mut start = 0;
-        while start < n {
-            let len = CHUNK.min(n - start);
-            let range = start..start + len;
-            let to = Target { column: &self.column_of, out, powers: self.needs_power() };
-            odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, to);
-            for (k, c) in self.outputs.iter().enumerate() {
-                match *c {
-                    Column::Input(i) => out[k][range.clone()].copy_from_slice(&points.torques[i][range.clone()]),
-                    Column::Linear(i) if self.column_of[i] == Some(k) => {}
-                    Column::Linear(i) => {
-                        let first = self.column_of[i].expect("a linear column is one of the outputs");
-                        let (head, tail) = out.split_at_mut(k);
-                        tail[0][range.clone()].copy_from_slice(&head[first][range.clone()]);
-                    }
-                    _ => out[k][range.clone()].copy_from_slice(self.chunk_column(c, work, len)),
-                }
-            }
-            start += len;
-        }
-        odd
-    }
-
-    /// The sum of each output over many points, with no result stored.
-    ///
-    /// # Panics
-    /// If `sums` is not as long as the outputs.
-    pub fn sum_batch(&self, points: &BatchInputs<'_>, work: &mut Workspace, sums: &mut [f64]) -> usize {
-        let n = points.len(self.speeds, self.torques);
-        assert_eq!(sums.len(), self.outputs.len(), "one sum for each output of the request");
-        sums.fill(0.0);
-        let mut odd = 0;
-        let mut start = 0;
-        while start < n {
-            let len = CHUNK.min(n - start);
-            let range = start..start + len;
-            match &self.single {
-                Some(single) => {
-                    let only_efficiency = self.outputs.iter().all(|c| *c == Column::Efficiency);
-                    single.chunk(self.arch, points, range.clone(), &mut work.chunk, only_efficiency);
-                }
-                None => {
-                    let to = Target { column: &self.column_of, out: &mut [], powers: self.needs_power() };
-                    odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, to);
-                }
-            }
-            for (sum, c) in sums.iter_mut().zip(&self.outputs) {
-                *sum += match *c {
-                    Column::Input(i) => kernel::sum(self.arch, &points.torques[i][range.clone()]),
-                    _ => kernel::sum(self.arch, self.chunk_column(c, work, len)),
-                };
-            }
-            start += len;
-        }
-        odd
-    }
-
-    fn needs_power(&self) -> bool {
-        self.outputs.iter().any(|c| matches!(c, Column::Loss | Column::Efficiency))
-    }
-
-    fn chunk_column<'w>(&self, c: &Column, work: &'w Workspace, len: usize) -> &'w [f64] {
-        match *c {
-            Column::Speed(i) => &work.chunk.speeds[i][..len],
-            Column::Linear(i) => &work.chunk.linear[i][..len],
-            Column::Loss => &work.chunk.loss[..len],
-            Column::Efficiency => &work.chunk.efficiency[..len],
-            Column::Input(_) => unreachable!("handed through by the caller"),
-        }
     }
 }

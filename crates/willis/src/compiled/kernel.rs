@@ -6,8 +6,9 @@
 
 use std::ops::Range;
 
-use super::duty::{BatchInputs, PointVerdict, ShaftDrag};
+use super::duty::PointVerdict;
 use super::iterated::{Iterated, Lanes};
+use super::pairs::{Fill, Line, Pair, Shared};
 use super::parts::{CHUNK, MOST_FEATURES, MOST_LINEAR, MOST_MOVING, Parts, Target, TorqueFrom};
 use super::passes::{combine, dot, lane};
 
@@ -15,6 +16,10 @@ use super::passes::{combine, dot, lane};
 const MOST_ELEMENTS: usize = 64;
 /// Patterns tried on whole chunks; other lanes go one by one.
 const RECENT: usize = 4;
+/// So few points are cheaper one by one.
+const FEW: usize = 4;
+/// A multiple of the points that are worked on side by side, whatever the width.
+const VECTORS: usize = 32;
 
 /// A pattern number that means: not found yet.
 const NONE: u64 = u64::MAX;
@@ -53,6 +58,9 @@ pub(super) struct Chunk {
     power_in: [f64; CHUNK],
     speed: [f64; CHUNK],
     recent: [usize; RECENT],
+    /// Inputs and linear outputs of points put side by side.
+    given: Vec<[f64; CHUNK]>,
+    compact: Vec<[f64; CHUNK]>,
 }
 
 impl Chunk {
@@ -72,6 +80,8 @@ impl Chunk {
             power_in: [0.0; CHUNK],
             speed: [0.0; CHUNK],
             recent: [0, last, last, last],
+            given: many(g.p.torques + g.p.speeds),
+            compact: many(g.p.linear),
         }
     }
 }
@@ -149,6 +159,11 @@ impl General {
     /// What it was made of.
     pub fn parts(&self) -> &Parts {
         &self.p
+    }
+
+    /// How many elements have two values of ρ and relative motion.
+    pub fn moving(&self) -> usize {
+        self.moving.len()
     }
 
     pub fn certified(&self) -> bool {
@@ -337,12 +352,12 @@ impl General {
         true
     }
 
-    /// A chunk of points; returns how many are not unique. Linear outputs go where `to` says, the rest
-    /// into the chunk's arrays.
+    /// A chunk of points, whose torques and speeds are `given`; returns how many are not unique. Linear outputs go where
+    /// `to` says, the rest into the chunk's arrays.
     pub fn chunk(
         &self,
         arch: pulp::Arch,
-        points: &BatchInputs<'_>,
+        given: &[&[f64]],
         range: Range<usize>,
         w: &mut Chunk,
         hint: &mut usize,
@@ -351,9 +366,7 @@ impl General {
         let n = range.len();
         let (l, d) = (self.p.torques, self.p.speeds);
         let mut inputs: [&[f64]; MOST_FEATURES] = [&[]; MOST_FEATURES];
-        for (slot, s) in inputs.iter_mut().zip(points.torques.iter().chain(points.speeds)) {
-            *slot = &s[range.clone()];
-        }
+        inputs[..given.len()].copy_from_slice(given);
         // Out of `w` while the features point into it.
         let mut signs = std::mem::take(&mut w.signs);
         for (out, row) in signs.iter_mut().zip(&self.p.signs) {
@@ -369,7 +382,10 @@ impl General {
         let x = &inputs[..self.features];
         let odd = match &self.iterated {
             Some(iterated) => iterated.chunk(arch, x, l..l + d, range.clone(), &mut w.lanes, &mut w.linear, &mut to),
-            None => self.patterns(arch, x, range.clone(), w, hint, &mut to),
+            None => match self.in_pairs(arch, x, range.clone(), w, hint, &mut to) {
+                Some(odd) => odd,
+                None => self.patterns(arch, x, range.clone(), w, hint, &mut to),
+            },
         };
         if to.powers {
             w.loss[..n].fill(0.0);
@@ -387,6 +403,161 @@ impl General {
             arch.dispatch(Efficiency { loss, power_in, out: &mut w.efficiency[..n] });
         }
         w.signs = signs;
+        odd
+    }
+
+    /// Linear outputs of a chunk of a train whose only speed keeps its sign, most points by two patterns at a time.
+    /// Nothing where the chunk is not of that kind.
+    fn in_pairs(
+        &self,
+        arch: pulp::Arch,
+        x: &[&[f64]],
+        range: Range<usize>,
+        w: &mut Chunk,
+        hint: &mut usize,
+        to: &mut Target<'_, '_>,
+    ) -> Option<usize> {
+        let inputs = self.p.torques + 1;
+        let plain = self.p.certified && self.p.speeds == 1 && self.p.signs.len() <= 1;
+        if !plain || self.features != inputs + self.p.signs.len() || !self.axis.iter().all(Option::is_some) {
+            return None;
+        }
+        let speed = x[self.p.torques];
+        let direction = if speed[0] > 0.0 { 1.0 } else { -1.0 };
+        if !arch.dispatch(KeepsSign { x: speed, direction }) {
+            return None;
+        }
+        match inputs {
+            1 => Some(self.pairs::<1>(arch, x, direction, range, w, hint, to)),
+            2 => Some(self.pairs::<2>(arch, x, direction, range, w, hint, to)),
+            3 => Some(self.pairs::<3>(arch, x, direction, range, w, hint, to)),
+            _ => None,
+        }
+    }
+
+    /// The rows of two patterns, where the speed has this direction.
+    fn pair<const F: usize>(&self, patterns: [usize; 2], direction: f64) -> Option<Pair<F>> {
+        let sign = match self.p.signs.first() {
+            Some(row) => sign(row[0]) * direction,
+            None => 1.0,
+        };
+        let [a, b] = patterns.map(|p| self.forces[p].as_ref());
+        let (a, b) = (a?, b?);
+        let mut pair = Pair {
+            fits: [[Line::NONE; 2]; MOST_MOVING],
+            moving: self.moving.len(),
+            outputs: [[Line::NONE; 2]; MOST_LINEAR],
+            linear: self.p.linear,
+        };
+        for bit in 0..self.moving.len() {
+            let factor = self.axis[bit].map_or(1.0, |a| a.1) * direction;
+            for (p, (pattern, row)) in patterns.iter().zip([&a[bit], &b[bit]]).enumerate() {
+                let side = if pattern >> bit & 1 == 1 { -factor } else { factor };
+                let line = Line::new(row, sign);
+                pair.fits[bit][p] = if side < 0.0 { line.negative() } else { line };
+            }
+        }
+        for (o, slot) in pair.outputs[..self.p.linear].iter_mut().enumerate() {
+            *slot = patterns.map(|p| Line::new(&self.table[p][o], sign));
+        }
+        Some(pair)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "those of a chunk, taken apart")]
+    fn pairs<const F: usize>(
+        &self,
+        arch: pulp::Arch,
+        x: &[&[f64]],
+        direction: f64,
+        range: Range<usize>,
+        w: &mut Chunk,
+        hint: &mut usize,
+        to: &mut Target<'_, '_>,
+    ) -> usize {
+        let n = range.len();
+        let Chunk { linear, recent, given, compact, .. } = w;
+        let mut own = [0usize; RECENT];
+        // All outputs at once: in the caller's slices where there are any, else in the chunk's own.
+        let mut slots: [&mut [f64]; MOST_LINEAR] = std::array::from_fn(|_| Default::default());
+        for (o, array) in linear.iter_mut().enumerate() {
+            if to.out.is_empty() || to.column[o].is_none() {
+                slots[o] = &mut array[..n];
+            }
+        }
+        for (k, out) in to.out.iter_mut().enumerate() {
+            if let Some(o) = to.column.iter().position(|c| *c == Some(k)) {
+                slots[o] = &mut out[range.clone()];
+            }
+        }
+        let inputs: [&[f64]; F] = std::array::from_fn(|k| x[k]);
+        let mut shared = Shared { taken: [0; 2], left: [0; CHUNK], open: 0 };
+        let known = |shared: &mut Shared, inputs, out: &mut [&mut [f64]], patterns| {
+            let pair = self.pair::<F>(patterns, direction)?;
+            arch.dispatch(Fill { x: inputs, pair: &pair, out, shared });
+            Some(shared.taken)
+        };
+        match known(&mut shared, inputs, &mut slots, [recent[0], recent[1]]) {
+            Some(taken) => own[..2].copy_from_slice(&taken),
+            None => {
+                shared.open = n;
+                shared.left.iter_mut().enumerate().for_each(|(i, lane)| *lane = i as u16);
+            }
+        }
+        // Points that are left are put side by side and tried with two more patterns.
+        let mut rest = shared.open;
+        let mut lanes = shared.left;
+        if rest > FEW {
+            let wide = rest.next_multiple_of(VECTORS).min(CHUNK);
+            for (given, x) in given.iter_mut().zip(inputs) {
+                given.iter_mut().zip(&lanes[..rest]).for_each(|(g, lane)| *g = x[usize::from(*lane)]);
+                let last = given[rest - 1];
+                given[rest..wide].fill(last);
+            }
+            let inputs = std::array::from_fn(|k| &given[k][..wide]);
+            let mut again = Shared { taken: [0; 2], left: [0; CHUNK], open: 0 };
+            let mut side: [&mut [f64]; MOST_LINEAR] = std::array::from_fn(|_| Default::default());
+            side.iter_mut().zip(compact.iter_mut()).for_each(|(slot, array)| *slot = &mut array[..wide]);
+            if known(&mut again, inputs, &mut side, [recent[2], recent[3]]).is_some() {
+                for (slot, values) in slots[..self.p.linear].iter_mut().zip(compact.iter()) {
+                    lanes[..rest].iter().zip(values).for_each(|(lane, x)| slot[usize::from(*lane)] = *x);
+                }
+                // What was filled up is counted too; it only decides which patterns come first.
+                own[2..].copy_from_slice(&again.taken);
+                let still = again.left[..again.open].iter().filter(|i| usize::from(**i) < rest);
+                let mut open = 0;
+                for i in still {
+                    shared.left[open] = lanes[usize::from(*i)];
+                    open += 1;
+                }
+                (rest, lanes) = (open, shared.left);
+            }
+        }
+        // What none of them fits goes one by one, and may bring a new pattern in.
+        let mut odd = 0;
+        let mut one = [0.0; MOST_FEATURES];
+        let mut relative = [0.0; MOST_MOVING];
+        for i in lanes[..rest].iter().map(|i| usize::from(*i)) {
+            one.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
+            let speed = x[F - 1][i];
+            relative.iter_mut().zip(&self.axis).for_each(|(s, a)| *s = a.map_or(0.0, |a| speed * a.1));
+            let (verdict, pattern) = self.find(&one[..self.features], &relative[..self.moving.len()], *hint);
+            odd += usize::from(verdict != PointVerdict::Unique);
+            if let Some(p) = pattern {
+                *hint = p;
+                if let Some(k) = recent.iter().position(|r| *r == p) {
+                    own[k] += 1;
+                }
+            }
+            for (o, slot) in slots[..self.p.linear].iter_mut().enumerate() {
+                slot[i] = pattern.map_or(f64::NAN, |p| dot(&self.table[p][o], &one[..self.features]));
+            }
+        }
+        let mut common: [(usize, usize); RECENT] = std::array::from_fn(|k| (own[k], recent[k]));
+        common.sort_unstable_by(|a, b| b.cmp(a));
+        *recent = common.map(|(_, pattern)| pattern);
+        if rest > FEW && !recent.contains(hint) {
+            recent[RECENT - 1] = *hint;
+        }
         odd
     }
 
@@ -581,6 +752,15 @@ lanes! {
             worst[i] = if first || g < worst[i] { g } else { worst[i] };
         }
     }
+    /// Whether all are on one side of zero, and not so near it that a product with them could vanish.
+    KeepsSign<'a> { x: &'a [f64], direction: f64 } -> bool {
+        const CLEAR: f64 = 1e-100;
+        let mut all = true;
+        for x in x {
+            all &= *x * direction > CLEAR;
+        }
+        all
+    }
     /// Speeds become their signs.
     Signs<'a> { x: &'a mut [f64] } -> () {
         for x in x {
@@ -637,78 +817,31 @@ lanes! {
         }
         partial.iter().sum::<f64>() + rest.iter().sum::<f64>()
     }
-    /// Sum, least and greatest; least and greatest leave NaN out.
-    Extremes<'a> { x: &'a [f64] } -> [f64; 3] {
-        const LANES: usize = 32;
-        let (chunks, rest) = x.as_chunks::<LANES>();
-        let mut sum = [0.0; LANES];
-        let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    /// Adds to partial sums; the extremes of `least`, `most` and the values, if they are other than `least` and `most`.
+    /// NaN is in the sums alone.
+    Add<'a> { x: &'a [f64], sum: &'a mut [f64; SUMS], least: f64, most: f64 } -> Option<[f64; 2]> {
+        let (chunks, rest) = x.as_chunks::<SUMS>();
+        let (mut own, mut below, mut above) = (*sum, [least; SUMS], [most; SUMS]);
         for c in chunks {
-            for k in 0..LANES {
-                sum[k] += c[k];
-                least[k] = if c[k] < least[k] { c[k] } else { least[k] };
-                most[k] = if c[k] > most[k] { c[k] } else { most[k] };
-            }
+            add_one(&mut own, &mut below, &mut above, c, c);
         }
-        for (k, x) in rest.iter().enumerate() {
-            sum[k] += x;
-            least[k] = if *x < least[k] { *x } else { least[k] };
-            most[k] = if *x > most[k] { *x } else { most[k] };
+        if !rest.is_empty() {
+            // An index that the compiler does not know would keep the sums out of registers. What is left is filled up
+            // with what changes no sum, -0, and no extreme, NaN.
+            let (mut last, mut extremes) = ([-0.0; SUMS], [f64::NAN; SUMS]);
+            last[..rest.len()].copy_from_slice(rest);
+            extremes[..rest.len()].copy_from_slice(rest);
+            add_one(&mut own, &mut below, &mut above, &last, &extremes);
         }
-        [
-            sum.iter().sum(),
-            least.iter().copied().fold(f64::INFINITY, f64::min),
-            most.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        ]
-    }
-    /// Loss and efficiency of a power split.
-    SinglePowers<'a, const LOADED> {
-        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
-    } -> () {
-        let n = torque.len();
-        let (w0, w1) = (&w0[..n], &w1[..n]);
-        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
-        let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            loss[i] = p.loss;
-            efficiency[i] = p.efficiency;
+        *sum = own;
+        let mut found = 0u64;
+        for k in 0..SUMS {
+            found |= u64::from(below[k] != least) | u64::from(above[k] != most);
         }
-    }
-    /// All results of a power split.
-    SingleAll<'a, const LOADED> {
-        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64],
-        first: &'a mut [f64], second: &'a mut [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
-    } -> () {
-        let n = torque.len();
-        let (w0, w1) = (&w0[..n], &w1[..n]);
-        let (first, second) = (&mut first[..n], &mut second[..n]);
-        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
-        let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            first[i] = p.torque[0];
-            second[i] = p.torque[1];
-            loss[i] = p.loss;
-            efficiency[i] = p.efficiency;
-        }
-    }
-    /// One result of a power split: 0 and 1 the torques, 2 the loss, 3 the efficiency.
-    SingleOne<'a, const LOADED, const WHAT> {
-        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], out: &'a mut [f64],
-    } -> () {
-        let n = out.len();
-        let (w0, w1, torque) = (&w0[..n], &w1[..n], &torque[..n]);
-        let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            out[i] = match WHAT {
-                0 => p.torque[0],
-                1 => p.torque[1],
-                2 => p.loss,
-                _ => p.efficiency,
-            };
-        }
+        (found != 0).then(|| {
+            let least = below.iter().fold(least, |m, x| if *x < m { *x } else { m });
+            [least, above.iter().fold(most, |m, x| if *x > m { *x } else { m })]
+        })
     }
 }
 
@@ -770,178 +903,31 @@ fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, fi
     by_count!(x.len(), go(arch, x, row, sigma, side, first, worst));
 }
 
-/// Sum, least and greatest of a slice.
-pub(super) fn extremes(arch: pulp::Arch, x: &[f64]) -> [f64; 3] {
-    arch.dispatch(Extremes { x })
+/// One value for each partial sum, and one for the extremes.
+#[inline(always)]
+fn add_one(
+    sum: &mut [f64; SUMS],
+    below: &mut [f64; SUMS],
+    above: &mut [f64; SUMS],
+    x: &[f64; SUMS],
+    extremes: &[f64; SUMS],
+) {
+    for k in 0..SUMS {
+        sum[k] += x[k];
+        below[k] = if extremes[k] < below[k] { extremes[k] } else { below[k] };
+        above[k] = if extremes[k] > above[k] { extremes[k] } else { above[k] };
+    }
+}
+
+/// Partial sums of many points.
+pub(super) const SUMS: usize = 32;
+
+/// Adds to partial sums; the extremes of all, if a value is below `least` or above `most`.
+pub(super) fn add(arch: pulp::Arch, x: &[f64], sum: &mut [f64; SUMS], [least, most]: [f64; 2]) -> Option<[f64; 2]> {
+    arch.dispatch(Add { x, sum, least, most })
 }
 
 /// Sum of a slice.
 pub(super) fn sum(arch: pulp::Arch, x: &[f64]) -> f64 {
     arch.dispatch(Sum { x })
-}
-
-/// One lossy element, two prescribed speeds on two of its three shafts, one torque: the power split
-/// of a hybrid, in one fused pass.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Single {
-    /// Speed of the third shaft over those of the first two.
-    third: [f64; 2],
-    /// Relative speed of end p over the first two, with the sign of the force per loaded torque.
-    drive: [f64; 2],
-    /// Torques of the two open shafts per torque that reaches the set: p drives, q drives, at rest.
-    gain: [[f64; 3]; 2],
-    drag: [ShaftDrag; 3],
-    /// Place (of the three shafts) of the loaded shaft and of the open ones.
-    loaded: usize,
-    open: [usize; 2],
-}
-
-/// Where the results of [`Single`] go.
-#[derive(Default)]
-pub(super) struct SingleOut<'o> {
-    pub torque: [Option<&'o mut [f64]>; 2],
-    pub loss: Option<&'o mut [f64]>,
-    pub efficiency: Option<&'o mut [f64]>,
-}
-
-/// Results at one point.
-struct SinglePoint {
-    torque: [f64; 2],
-    loss: f64,
-    efficiency: f64,
-}
-
-impl Single {
-    pub fn new(g: &General, loaded: usize, open: [usize; 2], drag: [ShaftDrag; 3]) -> Option<Self> {
-        let p = &g.p;
-        if p.columns.len() != 1 || g.moving.len() != 1 || !p.certified || p.torques != 1 || p.speeds != 2 {
-            return None;
-        }
-        let element = &p.columns[0];
-        // Terminals of the balance: the loaded one first, then the open ones.
-        let mut rows = [[0.0; 2]; 3];
-        for (t, place) in p.terminals.iter().zip([loaded, open[0], open[1]]) {
-            rows[place] = [t.speed[0], t.speed[1]];
-        }
-        if rows[0] != [1.0, 0.0] || rows[1] != [0.0, 1.0] {
-            return None;
-        }
-        let &[(_, constant, slope)] = &element.entries[..] else { return None };
-        let force = |rho: f64| 1.0 / (constant + slope * rho);
-        let rho = [element.rho[0], element.rho[1], 1.0];
-        // Certified: the coefficient has one sign, so the sign of the force is that of the torque.
-        let side = force(1.0).signum();
-        let gain = [0, 1].map(|o| rho.map(|r| force(r) * (p.per_force[0][0][o] + r * p.per_force[0][1][o])));
-        Some(Self {
-            third: rows[2],
-            drive: [element.relative[0] * side, element.relative[1] * side],
-            gain,
-            drag,
-            loaded,
-            open,
-        })
-    }
-
-    /// One point. Scalars throughout: an array indexed in here would become a gather.
-    #[inline(always)]
-    fn point<const LOADED: usize>(&self, w0: f64, w1: f64, torque: f64) -> SinglePoint {
-        let Self { third: [t0, t1], drive: [r0, r1], gain: [[ap, aq, ar], [bp, bq, br]], drag: [d0, d1, d2], .. } =
-            *self;
-        let w2 = t0 * w0 + t1 * w1;
-        let drag = |d: ShaftDrag, w: f64| (if w == 0.0 { 0.0 } else { d.coulomb.copysign(w) }) + d.viscous * w;
-        let (d0, d1, d2) = (drag(d0, w0), drag(d1, w1), drag(d2, w2));
-        // Loaded shaft first, then the open ones in order.
-        let ((wl, dl), (wa, da), (wb, db)) = match LOADED {
-            0 => ((w0, d0), (w1, d1), (w2, d2)),
-            1 => ((w1, d1), (w0, d0), (w2, d2)),
-            _ => ((w2, d2), (w0, d0), (w1, d1)),
-        };
-        let reaches = torque - dl;
-        let drive = reaches * (r0 * w0 + r1 * w1);
-        let pick = |p: f64, q: f64, rest: f64| {
-            let moving = if drive > 0.0 { p } else { q };
-            if drive == 0.0 { rest } else { moving }
-        };
-        let ta = pick(ap, aq, ar) * reaches + da;
-        let tb = pick(bp, bq, br) * reaches + db;
-        let (pl, pa, pb) = (torque * wl, ta * wa, tb * wb);
-        let pos = |p: f64| if p > 0.0 { p } else { 0.0 };
-        let power_in = pos(pl) + pos(pa) + pos(pb);
-        let loss = pl + pa + pb;
-        // Powers beyond floating point have no efficiency: nothing times infinity is no number.
-        let efficiency = if power_in > 0.0 { (power_in - loss) / power_in + loss * 0.0 } else { 0.0 };
-        SinglePoint { torque: [ta, tb], loss, efficiency }
-    }
-
-    /// The open shafts in ascending place, as [`Single::point`] numbers them.
-    fn ordered(&self) -> Self {
-        let mut s = *self;
-        if s.open[0] > s.open[1] {
-            s.open.swap(0, 1);
-            s.gain.swap(0, 1);
-        }
-        s
-    }
-
-    pub fn run(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], mut out: SingleOut<'_>) {
-        let s = self.ordered();
-        if self.open[0] > self.open[1] {
-            out.torque.swap(0, 1);
-        }
-        match s.loaded {
-            0 => s.go::<0>(arch, w0, w1, torque, out),
-            1 => s.go::<1>(arch, w0, w1, torque, out),
-            _ => s.go::<2>(arch, w0, w1, torque, out),
-        }
-    }
-
-    fn go<const LOADED: usize>(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], out: SingleOut<'_>) {
-        let SingleOut { torque: [first, second], loss, efficiency } = out;
-        let set = self;
-        match (first, second, loss, efficiency) {
-            (Some(first), Some(second), Some(loss), Some(efficiency)) => {
-                arch.dispatch(SingleAll::<LOADED> { set, w0, w1, torque, first, second, loss, efficiency });
-            }
-            (None, None, Some(loss), Some(efficiency)) => {
-                arch.dispatch(SinglePowers::<LOADED> { set, w0, w1, torque, loss, efficiency });
-            }
-            (first, second, loss, efficiency) => {
-                if let Some(out) = first {
-                    arch.dispatch(SingleOne::<LOADED, 0> { set, w0, w1, torque, out });
-                }
-                if let Some(out) = second {
-                    arch.dispatch(SingleOne::<LOADED, 1> { set, w0, w1, torque, out });
-                }
-                if let Some(out) = loss {
-                    arch.dispatch(SingleOne::<LOADED, 2> { set, w0, w1, torque, out });
-                }
-                if let Some(out) = efficiency {
-                    arch.dispatch(SingleOne::<LOADED, 3> { set, w0, w1, torque, out });
-                }
-            }
-        }
-    }
-
-    /// A chunk into the chunk's arrays.
-    pub fn chunk(
-        &self,
-        arch: pulp::Arch,
-        points: &BatchInputs<'_>,
-        range: Range<usize>,
-        w: &mut Chunk,
-        only_efficiency: bool,
-    ) {
-        let n = range.len();
-        let efficiency = Some(&mut w.efficiency[..n]);
-        let out = match &mut w.linear[..] {
-            [first, second, ..] if !only_efficiency => SingleOut {
-                torque: [Some(&mut first[..n]), Some(&mut second[..n])],
-                loss: Some(&mut w.loss[..n]),
-                efficiency,
-            },
-            _ => SingleOut { efficiency, ..SingleOut::default() },
-        };
-        let (speeds, torques) = (points.speeds, points.torques);
-        self.run(arch, &speeds[0][range.clone()], &speeds[1][range.clone()], &torques[0][range], out);
-    }
 }

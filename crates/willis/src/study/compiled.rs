@@ -7,7 +7,9 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::compiled::{BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, Extremes, Workspace};
+use crate::compiled::{
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, Workspace,
+};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
 use crate::model::{ShaftRef, Target};
@@ -86,6 +88,43 @@ struct Case {
     train: CompiledTrain,
     speeds: Vec<Input>,
     torques: Vec<Input>,
+    grid: Option<Grid>,
+}
+
+/// The inputs of a train, speeds first, where they are a grid that is numbered as the sweep is.
+#[derive(Clone, Debug)]
+struct Grid {
+    values: Vec<Arc<[f64]>>,
+    /// From the slowest to the fastest.
+    order: Vec<usize>,
+}
+
+impl Grid {
+    fn new(sweep: &Sweep<'_>, inputs: &[&Input]) -> Option<Self> {
+        let mut values: Vec<Arc<[f64]>> = vec![];
+        let mut axes = vec![];
+        for input in inputs {
+            let (own, axis) = match input {
+                Input::Constant(x) => (Arc::from([*x]), None),
+                Input::Axis(values) => (Arc::clone(&values.si), Some(values.axis)),
+                // Its sign follows the speeds.
+                Input::Role(..) => return None,
+            };
+            values.push(own);
+            axes.push(axis);
+        }
+        let points = values.iter().try_fold(1u64, |n, v| n.checked_mul(v.len() as u64));
+        let mut order: Vec<usize> = (0..axes.len()).collect();
+        order.sort_by_key(|k| axes[*k]);
+        // Every axis is an input, and its values are kept.
+        (points == Some(sweep.len())).then_some(Self { values, order })
+    }
+
+    fn with<T>(&self, speeds: usize, job: impl FnOnce(&GridInputs<'_>) -> T) -> T {
+        let values: Vec<&[f64]> = self.values.iter().map(|v| &v[..]).collect();
+        let (speeds, torques) = values.split_at(speeds);
+        job(&GridInputs::new(speeds, torques).nested(&self.order))
+    }
 }
 
 /// A sweep whose points are answered by compiled trains.
@@ -257,7 +296,9 @@ impl<'s> Sweep<'s> {
         for output in outputs {
             duty = duty.output(output.clone());
         }
-        Ok(Case { train: train.compile(&duty)?, speeds, torques })
+        let inputs: Vec<&Input> = speeds.iter().chain(&torques).collect();
+        let grid = Grid::new(self, &inputs);
+        Ok(Case { train: train.compile(&duty)?, grid, speeds, torques })
     }
 }
 
@@ -332,6 +373,11 @@ impl<'s> CompiledSweep<'s> {
         room.inputs.resize_with(own.speeds.len() + own.torques.len(), Vec::new);
         room.outputs.resize_with(own.train.outputs(), Vec::new);
         room.inputs.iter_mut().chain(&mut room.outputs).for_each(|v| v.resize(n, 0.0));
+        if let (Some(grid), Span::Run(from, _)) = (&own.grid, points) {
+            let points = *from as usize..*from as usize + n;
+            let mut outputs: Vec<&mut [f64]> = room.outputs.iter_mut().map(Vec::as_mut_slice).collect();
+            return grid.with(own.speeds.len(), |grid| own.train.evaluate_grid(grid, points, work, &mut outputs));
+        }
         let set = |input: &Input, speeds: &[Vec<f64>], out: &mut [f64]| match input {
             Input::Constant(x) => out.fill(*x),
             Input::Axis(values) => points.axis(&self.sweep, values, out),
@@ -361,12 +407,31 @@ impl<'s> CompiledSweep<'s> {
     /// What the points from `from` up to `to` say together; no row is made.
     pub fn summary(&self, from: u64, to: u64, room: &mut SweepWorkspace) -> Summary {
         let mut summary = Summary::default();
-        let mut point = from;
-        while point < to {
-            let n = (to - point).min(BLOCK as u64) as usize;
-            self.block(point, n, room, &mut summary, None);
-            point += n as u64;
-        }
+        let blocks = (from..to).step_by(BLOCK).map(|point| point..to.min(point + BLOCK as u64));
+        let [Case { train, grid: Some(grid), speeds, .. }] = &self.cases[..] else {
+            blocks.for_each(|b| self.block(b.start, (b.end - b.start) as usize, room, &mut summary, None));
+            return summary;
+        };
+        grid.with(speeds.len(), |grid| {
+            let layout = train.layout(grid);
+            let mut work = room.work.pop().flatten().unwrap_or_else(|| train.workspace());
+            let mut known = [OutputSummary::default(); 2];
+            for block in blocks {
+                let before = known;
+                known.iter_mut().for_each(|k| k.sum = 0.0);
+                let points = block.start as usize..block.end as usize;
+                let odd = train.summarize_grid_block(&layout, points, &mut work, &mut known);
+                let n = block.end - block.start;
+                if odd == 0 && all_drive(&known[0]) {
+                    // All unique and driving: nothing to look at one by one.
+                    all_unique(&mut summary, n, &known);
+                } else {
+                    known = before;
+                    self.block(block.start, n as usize, room, &mut summary, None);
+                }
+            }
+            room.work = vec![Some(work)];
+        });
         summary
     }
 
@@ -397,14 +462,14 @@ impl<'s> CompiledSweep<'s> {
         let single = self.cases.len() == 1;
         if single && self.evaluate(0, &Span::Run(from, n), room) == 0 {
             let [efficiency, loss, ..] = &room.outputs[..] else { unreachable!("always asked for") };
-            let found = Extremes::of(efficiency, self.arch);
-            // A single NaN would be in the sum.
-            if found.least > 0.0 && !found.sum.is_nan() {
+            let known = [efficiency, loss].map(|values| {
+                let mut known = OutputSummary::default();
+                known.add_block(self.arch, values, from as usize);
+                known
+            });
+            if all_drive(&known[0]) {
                 // All unique and driving: nothing to look at one by one.
-                summary.points += n as u64;
-                *summary.verdicts.entry(PointVerdict::Unique).or_default() += n as u64;
-                extend(&mut summary.efficiency, found, efficiency, from);
-                extend(&mut summary.loss_w, Extremes::of(loss, self.arch), loss, from);
+                all_unique(summary, n as u64, &known);
                 if let Some(cells) = cells {
                     self.plain_rows(from, n, &room.outputs, cells);
                 }
@@ -590,8 +655,18 @@ impl Span<'_> {
     }
 }
 
-/// Adds values none of which is NaN, those of the points from `first` on.
-fn extend(extent: &mut MinMaxSum, found: Extremes, values: &[f64], first: u64) {
-    let at = |x: f64| first + values.iter().position(|v| *v == x).unwrap_or(0) as u64;
-    extent.add_run(values.len() as u64, found.sum, [found.least, found.most], at);
+/// Whether all efficiencies are above 0: a single NaN would be in the sum.
+fn all_drive(efficiency: &OutputSummary) -> bool {
+    efficiency.min.is_some_and(|min| min.value > 0.0) && !efficiency.sum.is_nan()
+}
+
+/// Adds points that are all unique and drive, by their efficiency and loss.
+fn all_unique(summary: &mut Summary, points: u64, [efficiency, loss]: &[OutputSummary; 2]) {
+    summary.points += points;
+    *summary.verdicts.entry(PointVerdict::Unique).or_default() += points;
+    for (all, own) in [(&mut summary.efficiency, efficiency), (&mut summary.loss_w, loss)] {
+        let (Some(min), Some(max)) = (own.min, own.max) else { continue };
+        let at = |x: f64| if x == min.value { min.point } else { max.point } as u64;
+        all.add_run(points, own.sum, [min.value, max.value], at);
+    }
 }

@@ -3,7 +3,8 @@
 use allocation_counter::measure;
 use willis::analysis::{Selection, Verdict, analyze};
 use willis::compiled::{
-    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, PointVerdict, PowerLoss, ShaftDrag,
+    BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, PointVerdict, PowerLoss,
+    ShaftDrag,
 };
 use willis::diagnostic::Code;
 use willis::train::{OperationSpec, SetSpec, Specification, Train};
@@ -209,6 +210,194 @@ fn a_batch_equals_its_points() {
         for (s, o) in sums.iter().zip(&out) {
             let size: f64 = o.iter().map(|x| x.abs()).sum();
             assert!((s - o.iter().sum::<f64>()).abs() <= 1e-11 * size);
+        }
+    }
+}
+
+/// In a gear whose input keeps its direction: the same bits for a point alone, in a batch, and wherever in the batch it
+/// stands, whichever of many patterns of drivers it has.
+#[test]
+fn points_of_a_gear_are_the_same_alone_and_in_a_batch() {
+    let n = 1300;
+    let mut random = Uniform(5);
+    for name in ["zf-8hp70", "ford-10r80"] {
+        let train = common::train(name);
+        let [input, output] = [train.input(), train.output()].map(|m| train.member_name(m.unwrap()).to_owned());
+        for (k, state) in train.states().iter().enumerate() {
+            let mut duty = CompileRequest::new([input.as_str()], [input.as_str()])
+                .state(&state.name)
+                .output(CompiledOutput::Torque(output.clone()))
+                .output(CompiledOutput::Loss)
+                .output(CompiledOutput::Efficiency);
+            // Light loads beside drag: the pattern changes with speed.
+            for m in ["input", "output", "c3", "r1"].iter().filter(|m| train.member(m).is_some()) {
+                duty = duty.drag(m, ShaftDrag { coulomb: 0.3, viscous: 2e-3 });
+            }
+            for e in &state.engaged {
+                let name = train.shift_elements()[e.index()].name.clone();
+                let more = duty.clone().output(CompiledOutput::ShiftElementTorque(name));
+                duty = if train.compile(&more).is_ok() { more } else { duty };
+            }
+            let compiled = train.compile(&duty).unwrap();
+            let direction = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let w: Vec<f64> = (0..n).map(|_| direction * random.between(20.0, 500.0)).collect();
+            let t: Vec<f64> = (0..n)
+                .map(|i| match i % 5 {
+                    0 => random.between(-3.0, 3.0),
+                    1 if i % 77 == 1 => 0.0,
+                    2 if i % 100 == 2 => f64::NAN,
+                    _ => random.between(-100.0, 350.0),
+                })
+                .collect();
+            let mut one = vec![0.0; compiled.outputs()];
+            for from in [0, 1, 13, 1290] {
+                let mut work = compiled.workspace();
+                let mut out = vec![vec![0.5; n - from]; compiled.outputs()];
+                let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+                let points = BatchInputs { speeds: &[&w[from..]], torques: &[&t[from..]] };
+                compiled.evaluate_batch(&points, &mut work, &mut slices);
+                for i in 0..n - from {
+                    compiled.evaluate(&[w[from + i]], &[t[from + i]], &mut work, &mut one);
+                    for (o, own) in out.iter().zip(&one) {
+                        let same = o[i] == *own || o[i].is_nan() && own.is_nan();
+                        assert!(same, "{name} {}: {} {}: {} {own}", state.name, w[from + i], t[from + i], o[i]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The arrays that a grid stands for: points in the order of `order`, slowest first.
+fn expanded(values: &[&[f64]], order: &[usize]) -> Vec<Vec<f64>> {
+    let points = values.iter().map(|v| v.len()).product();
+    let mut arrays = vec![vec![0.0; points]; values.len()];
+    for point in 0..points {
+        let mut rest = point;
+        for &k in order.iter().rev() {
+            arrays[k][point] = values[k][rest % values[k].len()];
+            rest /= values[k].len();
+        }
+    }
+    arrays
+}
+
+/// Results of a grid and of its arrays have the same bits, and so have sums and extremes, whichever input is fastest and
+/// from whichever point on.
+#[test]
+fn a_grid_is_its_arrays_to_the_last_bit() {
+    let split = |outputs: &[CompiledOutput]| {
+        let duty = with_drag(CompileRequest::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
+        power_split().build().unwrap().compile(&outputs.iter().cloned().fold(duty, CompileRequest::output)).unwrap()
+    };
+    let [ring, carrier] = ["ring", "carrier"].map(|m| CompiledOutput::Torque(m.into()));
+    let reversed =
+        CompileRequest::new(["carrier", "ring"], ["ring"]).output(carrier.clone()).output(CompiledOutput::Efficiency);
+    let third = CompileRequest::new(["sun", "ring"], ["carrier"]).output(CompiledOutput::Loss).output(ring.clone());
+    let bare = |duty: &CompileRequest| power_split().build().unwrap().compile(duty).unwrap();
+    let eight = with_drag(CompileRequest::new(["input"], ["input"]).state("5"), &SHAFTS);
+    let eight = eight.output(CompiledOutput::Torque("output".into())).output(CompiledOutput::Torque("input".into()));
+    let trains = [
+        split(&[ring.clone(), carrier.clone(), CompiledOutput::Loss, CompiledOutput::Efficiency]),
+        split(&[CompiledOutput::Efficiency]),
+        split(&[
+            CompiledOutput::Loss,
+            CompiledOutput::Efficiency,
+            CompiledOutput::Torque("sun".into()),
+            CompiledOutput::Loss,
+        ]),
+        split(&[CompiledOutput::Speed("ring".into()), ring, CompiledOutput::Efficiency]),
+        bare(&reversed),
+        bare(&third),
+        common::train("zf-8hp70").compile(&eight.clone().output(CompiledOutput::Efficiency)).unwrap(),
+        eight_speed([1.0; 4]).compile(&with_laws(eight)).unwrap(),
+    ];
+    let nowhere = GridInputs::new(&[&[1.0, 2.0], &[]], &[&[1.0, 2.0]]);
+    assert!(nowhere.is_empty());
+    let mut none = [OutputSummary::default()];
+    assert_eq!(trains[1].evaluate_grid(&nowhere, 0..0, &mut trains[1].workspace(), &mut [&mut []]), 0);
+    assert_eq!(trains[1].summarize_grid(&nowhere, 0..0, &mut trains[1].workspace(), &mut none), 0);
+    assert_eq!((none[0].sum, none[0].min, none[0].max), (0.0, None, None));
+    let mut up: Vec<f64> = (0..700).map(|k| -200.0 + 0.57 * f64::from(k)).collect();
+    up[351] = 0.0;
+    let down: Vec<f64> = up.iter().rev().copied().collect();
+    let mixed = vec![3.0, -1.0, 0.0, 250.0, f64::NAN, -0.0];
+    let large = vec![-1e308, -1e300, -1e-300, 0.0, 1e-310, 0.4, 0.4 + 1e-16, 1e155, 1e304, f64::MAX];
+    let slow = [-400.0, -0.0, 0.0, 30.0, 70.0, 1e-300];
+    for (at, compiled) in trains.iter().enumerate() {
+        let freedoms = if at < 6 { 2 } else { 1 };
+        for fast in [&up, &down, &mixed, &large] {
+            for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
+                // The law of losses is given for ordinary numbers.
+                if at == 7 && (fast == &large || fast == &mixed) {
+                    continue;
+                }
+                let speeds: Vec<&[f64]> = vec![&slow[..if at == 7 { 5 } else { 6 }], &[-20.0, 70.0, 5.0][..]];
+                let speeds = &speeds[..freedoms];
+                let order: Vec<usize> = order.into_iter().filter(|k| *k <= freedoms).collect();
+                let values: Vec<&[f64]> = speeds.iter().copied().chain([&fast[..]]).collect();
+                let torques = [&fast[..]];
+                let grid = GridInputs::new(speeds, &torques);
+                let grid = if order.is_sorted() { grid } else { grid.nested(&order) };
+                let arrays = expanded(&values, &order);
+                let slices: Vec<&[f64]> = arrays.iter().map(|a| &a[..]).collect();
+                let n = arrays[0].len();
+                assert_eq!(grid.len(), n);
+                for range in [0..n, 1..n - 1, n / 3..n / 3 + 1, 5..5] {
+                    let given: Vec<&[f64]> = slices.iter().map(|s| &s[range.clone()]).collect();
+                    let points = BatchInputs { speeds: &given[..freedoms], torques: &given[freedoms..] };
+                    let mut work = compiled.workspace();
+                    let filled = |run: &mut dyn FnMut(&mut [&mut [f64]]) -> usize| {
+                        let mut out = vec![vec![f64::NAN; range.len()]; compiled.outputs()];
+                        let odd = run(&mut out.iter_mut().map(|o| &mut o[..]).collect::<Vec<_>>());
+                        (out, odd)
+                    };
+                    let (arrays, odd) = filled(&mut |out| compiled.evaluate_batch(&points, &mut work, out));
+                    let mut work = compiled.workspace();
+                    let (own, own_odd) =
+                        filled(&mut |out| compiled.evaluate_grid(&grid, range.clone(), &mut work, out));
+                    assert_eq!(odd, own_odd);
+                    for (k, (x, y)) in arrays.iter().zip(&own).enumerate() {
+                        for i in 0..x.len() {
+                            let same = x[i].to_bits() == y[i].to_bits() || x[i].is_nan() && y[i].is_nan();
+                            let point: Vec<f64> = given.iter().map(|g| g[i]).collect();
+                            assert!(same, "train {at} output {k} at {point:?}: {} {}", x[i], y[i]);
+                        }
+                    }
+                    // Sums of 32, 2048 points at a time.
+                    let expected = |x: &[f64], offset: usize| {
+                        let mut all = OutputSummary::default();
+                        for block in x.chunks(2048) {
+                            let mut sums = [0.0; 32];
+                            block.iter().enumerate().for_each(|(i, x)| sums[i % 32] += x);
+                            all.sum += sums.iter().sum::<f64>();
+                        }
+                        let least = x.iter().copied().fold(f64::INFINITY, f64::min);
+                        let most = x.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                        let at = |value: f64| x.iter().position(|x| *x == value).map(|i| (value, i + offset));
+                        (
+                            all.sum,
+                            at(least).filter(|m| m.0 < f64::INFINITY),
+                            at(most).filter(|m| m.0 > f64::NEG_INFINITY),
+                        )
+                    };
+                    for from_grid in [false, true] {
+                        let mut out = vec![OutputSummary::default(); compiled.outputs()];
+                        let mut work = compiled.workspace();
+                        let own_odd = match from_grid {
+                            true => compiled.summarize_grid(&grid, range.clone(), &mut work, &mut out),
+                            false => compiled.summarize_batch(&points, &mut work, &mut out),
+                        };
+                        assert_eq!(odd, own_odd);
+                        for (x, own) in arrays.iter().zip(&out) {
+                            let (sum, least, most) = expected(x, if from_grid { range.start } else { 0 });
+                            assert!(sum.to_bits() == own.sum.to_bits() || sum.is_nan() && own.sum.is_nan());
+                            assert_eq!(own.min.map(|m| (m.value, m.point)), least);
+                            assert_eq!(own.max.map(|m| (m.value, m.point)), most);
+                        }
+                    }
+                }
+            }
         }
     }
 }
