@@ -152,10 +152,8 @@ impl Table {
     /// `rate`: more is better; else fewer seconds are. A goal in times is on the ratio.
     fn row(
         &mut self,
-        what: &str,
-        peer: &str,
-        theirs: Option<f64>,
-        ours: Measured,
+        (what, peer): (&str, &str),
+        (theirs, ours): (Option<f64>, Measured),
         rate: bool,
         goal: Goal,
         limit: &str,
@@ -235,16 +233,16 @@ fn run(root: &Path) -> Result<(), String> {
     table.head();
     for &(task, peer, goal, limit) in RATES {
         let theirs = results.theirs(task, peer, true, &mut wrong)?;
-        table.row(task, peer, theirs, results.rate(task)?, true, goal, limit);
+        table.row((task, peer), (theirs, results.rate(task)?), true, goal, limit);
     }
     for &(task, peer, goal, limit) in ANSWERS {
         let theirs = results.theirs(task, peer, false, &mut wrong)?;
-        table.row(task, peer, theirs, results.seconds(task)?, false, goal, limit);
+        table.row((task, peer), (theirs, results.seconds(task)?), false, goal, limit);
     }
     for &(task, goal) in BATCHES {
         let ours = results.recorded(task, "ratio")?;
         let one = Measured { value: ours.value, spread: ours.spread };
-        table.row(task, "one by one", Some(1.0), one, true, Times(goal), "");
+        table.row((task, "one by one"), (Some(1.0), one), true, Times(goal), "");
     }
     commands(&results, &mut table, &mut wrong)?;
     fs::write(folder.join("table.txt"), table.lines.join("\n") + "\n").map_err(|e| e.to_string())?;
@@ -408,12 +406,12 @@ fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Re
             let goal = if name == "numpy-whole-array" && threads == "2" { Times(20.0) } else { Goal::None };
             let ours = Measured { value: points / seconds.value, ..seconds };
             let what = format!("sweep of 1e7 points, {threads} threads");
-            table.row(&what, name, peer["points_per_s"].as_f64(), ours, true, goal, "");
+            table.row((&what, name), (peer["points_per_s"].as_f64(), ours), true, goal, "");
         }
     }
     let table_file = out("map.parquet");
     let (written, _) = run(&[&on("2")[..], &["--force", "--out", &table_file]].concat(), 5)?;
-    table.row("the same, into Parquet", "without a table", Some(two), written, false, Times(1.0 / 1.5), "");
+    table.row(("the same, into Parquet", "without a table"), (Some(two), written), false, Times(1.0 / 1.5), "");
 
     let physical = |more: &[&'static str]| {
         let sweep = ["sweep", "examples/fva-planetary-stage.toml", "--over", "sun.speed=100..3000 rpm:100", "--over"];
@@ -421,16 +419,22 @@ fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Re
     };
     let (one, _) = run(&physical(&["1"]), 5)?;
     let (both, _) = run(&physical(&["2"]), 5)?;
-    table.row("physical map, two threads", "one thread", Some(one.value), both, false, Times(1.8), "2");
+    table.row(("physical map, two threads", "one thread"), (Some(one.value), both), false, Times(1.8), "2");
     let file = out("physical.parquet");
     let (written, _) = run(&[&physical(&["1"])[..], &["--force", "--out", &file]].concat(), 5)?;
-    table.row("physical map, into Parquet", "without a table", Some(one.value), written, false, Times(1.0 / 1.3), "1");
+    table.row(
+        ("physical map, into Parquet", "without a table"),
+        (Some(one.value), written),
+        false,
+        Times(1.0 / 1.3),
+        "1",
+    );
 
     let (analyzed, _) = run(&["analyze", "examples/zf-8hp70.toml"], 25)?;
-    table.row("command: analyze 8HP70", "", None, analyzed, false, Most(4e-3), "");
+    table.row(("command: analyze 8HP70", ""), (None, analyzed), false, Most(4e-3), "");
     let report = out("report.html");
     let (reported, _) = run(&["report", "examples/zf-8hp70.toml", "--force", "--out", &report], 7)?;
-    table.row("command: report 8HP70", "", None, reported, false, Most(0.3), "");
+    table.row(("command: report 8HP70", ""), (None, reported), false, Most(0.3), "");
     Ok(())
 }
 

@@ -646,11 +646,14 @@ impl<'s, 't> Shape<'s, 't> {
                     .collect::<Vec<RationalFunction>>()
             })
             .collect();
+        // With one freedom every speed is a product of ratios; the difference of such a product and of a symbol for it would
+        // be multiplied out.
+        let one = setup.base.len() == 1 && setup.independent_torques() == 1;
         let in_terminals = |node: Option<usize>| -> RationalFunction {
             let Some(node) = node else { return RationalFunction::ZERO };
             match setup.terminals.iter().position(|t| t.node == node) {
-                Some(t) => RationalFunction::symbol(names.speed(t)),
-                None => (0..setup.base.len()).fold(RationalFunction::ZERO, |sum, b| {
+                Some(t) if !one => RationalFunction::symbol(names.speed(t)),
+                _ => (0..setup.base.len()).fold(RationalFunction::ZERO, |sum, b| {
                     sum.plus(&node_speed(node, b).times(&RationalFunction::symbol(names.speed(setup.base[b]))))
                 }),
             }
