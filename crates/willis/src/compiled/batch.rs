@@ -240,7 +240,7 @@ impl CompiledTrain {
     }
 
     /// A few points into the arrays of the workspace, at least what is wanted.
-    fn into_work(
+    fn fill_work(
         &self,
         source: Source<'_, '_>,
         points: Range<usize>,
@@ -317,7 +317,7 @@ impl CompiledTrain {
         let step = if self.single.is_some() { SUM_BLOCK } else { CHUNK };
         for start in points.clone().step_by(step) {
             let now = start..points.end.min(start + step);
-            odd += self.into_work(source, now.clone(), work, wanted);
+            odd += self.fill_work(source, now.clone(), work, wanted);
             for (k, (c, o)) in wanted.iter().zip(&mut *out).enumerate() {
                 match *c {
                     Column::Input(i) => {
@@ -352,7 +352,7 @@ impl CompiledTrain {
         for start in (0..n).step_by(CHUNK) {
             let range = start..n.min(start + CHUNK);
             let len = range.len();
-            odd += self.into_work(Source::Arrays(points), range.clone(), work, &self.outputs);
+            odd += self.fill_work(Source::Arrays(points), range.clone(), work, &self.outputs);
             for (sum, c) in sums.iter_mut().zip(&self.outputs) {
                 *sum += match *c {
                     Column::Input(i) => kernel::sum(self.arch, &points.torques[i][range.clone()]),
