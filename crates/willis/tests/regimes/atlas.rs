@@ -1046,8 +1046,8 @@ fn coupled_pairs(pairs: usize) -> Train {
         let (sun, carrier, between) = (shaft(k - 1), shaft(k), format!("a{k}"));
         let teeth = 61 + 2 * (k as i64 % 9);
         spec = spec
-            .set(SetSpec::simple(&format!("P{k}"), (&sun, 30), ("frame", teeth), &between).basic_efficiency(0.98))
-            .set(SetSpec::simple(&format!("Q{k}"), (&sun, 33), (&between, 77), &carrier).basic_efficiency(0.97));
+            .set(SetSpec::simple(format!("P{k}"), (&sun, 30), ("frame", teeth), &between).basic_efficiency(0.98))
+            .set(SetSpec::simple(format!("Q{k}"), (&sun, 33), (&between, 77), &carrier).basic_efficiency(0.97));
     }
     spec.build().unwrap()
 }
