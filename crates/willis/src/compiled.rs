@@ -640,7 +640,7 @@ impl CompiledTrain {
                 Column::Linear(i) => linear[i],
                 Column::Loss => power,
                 // Nothing times infinity is no number: powers beyond floating point have no efficiency.
-                Column::Efficiency if power_in > 0.0 => (power_in - power) / power_in + power * 0.0,
+                Column::Efficiency if power_in >= kernel::LEAST_POWER => (power_in - power) / power_in + power * 0.0,
                 Column::Efficiency => power * 0.0,
             };
         }

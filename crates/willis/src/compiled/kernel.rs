@@ -21,6 +21,9 @@ const FEW: usize = 4;
 /// A multiple of the points that are worked on side by side, whatever the width.
 const VECTORS: usize = 32;
 
+/// Least power in, W, of which an efficiency is told: below it floating point has no digits to tell it with.
+pub(super) const LEAST_POWER: f64 = f64::MIN_POSITIVE;
+
 /// A pattern number that means: not found yet.
 const NONE: u64 = u64::MAX;
 /// A pattern number that means: an element is at rest at this point.
@@ -803,7 +806,7 @@ lanes! {
             // Powers beyond floating point have no efficiency: nothing times infinity is no number.
             let none = loss[i] * 0.0;
             let e = (power_in[i] - loss[i]) / power_in[i] + none;
-            out[i] = if power_in[i] > 0.0 { e } else { none };
+            out[i] = if power_in[i] >= LEAST_POWER { e } else { none };
         }
     }
     /// Sum in 32 partial sums.

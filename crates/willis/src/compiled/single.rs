@@ -5,7 +5,7 @@
 //! stretch needs no comparison; the numbers are the same to the last bit.
 
 use super::duty::ShaftDrag;
-use super::kernel::General;
+use super::kernel::{General, LEAST_POWER};
 use super::parts::CHUNK;
 
 /// The numbers of the power split.
@@ -86,7 +86,7 @@ impl Row {
         let power_in = pos(pl) + pos(pa) + pos(pb);
         let loss = pl + pa + pb;
         // Powers beyond floating point have no efficiency: nothing times infinity is no number.
-        let efficiency = if power_in > 0.0 { (power_in - loss) / power_in + loss * 0.0 } else { 0.0 };
+        let efficiency = if power_in >= LEAST_POWER { (power_in - loss) / power_in + loss * 0.0 } else { 0.0 };
         SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive, loss, efficiency }
     }
 
@@ -155,7 +155,7 @@ impl Stretch {
         let pos = |p: f64, enters: u64| f64::from_bits(p.to_bits() & enters);
         let power_in = pos(pl, l) + pos(pa, m) + pos(pb, n);
         let loss = pl + pa + pb;
-        let efficiency = if any > 0.0 { (power_in - loss) / power_in } else { 0.0 };
+        let efficiency = if any > 0.0 && power_in >= LEAST_POWER { (power_in - loss) / power_in } else { 0.0 };
         SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive: 0.0, loss, efficiency }
     }
 }

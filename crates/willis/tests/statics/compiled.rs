@@ -703,3 +703,26 @@ fn powers_beyond_floating_point_have_no_efficiency() {
         }
     }
 }
+
+/// Powers of a few units of the last place that floating point has tell no efficiency; none is told above one.
+#[test]
+fn powers_below_floating_point_have_no_efficiency() {
+    let train = power_split().build().unwrap();
+    let request = CompileRequest::new(["sun", "carrier"], ["sun"]).output(CompiledOutput::Efficiency);
+    let compiled = train.compile(&request).unwrap();
+    let mut work = compiled.workspace();
+    let torques: Vec<f64> =
+        (0..40).map(|k| 5e-324 * f64::from(k - 7)).chain((0..60).map(|k| 1e-330 * 10f64.powi(k))).collect();
+    for (sun, carrier) in [(-5.0, 0.7), (3.0, -2.0), (1.0, 0.9)] {
+        let (a, b) = (vec![sun; torques.len()], vec![carrier; torques.len()]);
+        let mut many = vec![0.5; torques.len()];
+        let input = BatchInputs { speeds: &[&a, &b], torques: &[&torques] };
+        compiled.evaluate_batch(&input, &mut work, &mut [&mut many]);
+        for (torque, many) in torques.iter().zip(&many) {
+            let mut one = [0.5];
+            compiled.evaluate(&[sun, carrier], &[*torque], &mut work, &mut one);
+            assert!((0.0..=1.0).contains(&one[0]), "{torque:e} N m at {sun} and {carrier} rad/s: {}", one[0]);
+            assert_eq!(one[0], *many, "{torque:e} N m");
+        }
+    }
+}
