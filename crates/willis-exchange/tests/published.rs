@@ -115,15 +115,16 @@ fn check(name: &str, text: &str, met: &mut BTreeSet<(String, String)>) {
             met.insert((kind.to_owned(), id));
         }
     };
-    let [relations, components] = [elements(root)[0], elements(root)[1]];
-    for id in elements(node(components)) {
+    let parts = elements(root);
+    let [relations, components, spectra @ ..] = &parts[..] else { unreachable!("as asserted above") };
+    for id in elements(node(*components)) {
         let component = node(id);
         let kind = of(component, "type");
         attributes(component, &kind);
         assert!(kinds.insert(whole(&of(component, "id")), kind).is_none(), "{name}: a number of a component twice");
     }
     let mut numbers = BTreeSet::new();
-    for id in elements(node(relations)) {
+    for id in elements(node(*relations)) {
         let relation = node(id);
         assert!(numbers.insert(whole(&of(relation, "id"))), "{name}: a number of a relation twice");
         let kind = of(relation, "type");
@@ -142,9 +143,9 @@ fn check(name: &str, text: &str, met: &mut BTreeSet<(String, String)>) {
             "{name}: there is no relation {kind} of {roles:?}"
         );
     }
-    for spectrum in elements(root).into_iter().skip(2) {
-        whole(&of(node(spectrum), "id"));
-        for case in elements(node(spectrum)) {
+    for spectrum in spectra {
+        whole(&of(node(*spectrum), "id"));
+        for case in elements(node(*spectrum)) {
             assert_eq!(node(case).tag_name().name(), "load_case");
             whole(&of(node(case), "id"));
             for id in elements(node(case)) {

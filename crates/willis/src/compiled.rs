@@ -60,6 +60,8 @@ pub struct CompiledTrain {
     column_of: Vec<Option<usize>>,
     general: General,
     single: Option<Single>,
+    /// Whether a quotient of powers is asked for.
+    divides: bool,
     arch: pulp::Arch,
 }
 
@@ -432,6 +434,7 @@ impl<'t> Compiler<'t> {
         let single = self.single(&general, &open, &drag_of, &columns);
         let column_of = (0..general.linear()).map(|o| columns.iter().position(|c| *c == Column::Linear(o))).collect();
         Ok(CompiledTrain {
+            divides: columns.contains(&Column::Efficiency),
             outputs: columns,
             speeds: d,
             torques: l,
@@ -629,6 +632,16 @@ impl CompiledTrain {
     /// If the slices are not as long as the request has speeds, torques and outputs.
     pub fn evaluate(&self, speeds: &[f64], torques: &[f64], work: &mut Workspace, out: &mut [f64]) -> PointVerdict {
         assert_eq!((speeds.len(), torques.len(), out.len()), (self.speeds, self.torques, self.outputs.len()));
+        let mut own = [[0.0; MOST_FEATURES]; 2];
+        let [speeds, torques] = match self.divides && speeds.iter().chain(torques).any(|x| x.is_subnormal()) {
+            false => [speeds, torques],
+            true => {
+                let [w, t] = &mut own;
+                w[..speeds.len()].copy_from_slice(speeds);
+                t[..torques.len()].copy_from_slice(torques);
+                [batch::without_tiny(&mut w[..speeds.len()]), batch::without_tiny(&mut t[..torques.len()])]
+            }
+        };
         let mut linear = [0.0; MOST_LINEAR];
         let linear = &mut linear[..self.general.linear()];
         let verdict = self.general.point(speeds, torques, &mut work.hint, linear);

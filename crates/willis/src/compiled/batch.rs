@@ -6,10 +6,11 @@ use super::duty::BatchInputs;
 use super::grid::{GridInputs, Layout, OutputSummary, PointValue};
 use super::kernel::{self, Chunk, SUMS};
 use super::parts::{CHUNK, MOST_FEATURES, Target};
+use super::passes::is_tiny;
 use super::single::{Single, SingleOut};
 use super::{Column, CompiledTrain};
 
-/// BatchInputs that are added up before their sum is added to that of all points.
+/// Points that are added up before their sum is added to that of all points.
 const SUM_BLOCK: usize = 4 * CHUNK;
 
 /// Room for the work on a batch; make it once and use it again.
@@ -34,7 +35,7 @@ enum Source<'s, 'a> {
 }
 
 impl<'s> Source<'s, '_> {
-    /// The inputs at the points of a chunk, torques first.
+    /// The inputs at the points of a chunk, torques first. Where an efficiency is asked for, tiny ones are zero.
     fn given<'g>(
         self,
         train: &CompiledTrain,
@@ -48,15 +49,23 @@ impl<'s> Source<'s, '_> {
         let mut given: [&[f64]; MOST_FEATURES] = [&[]; MOST_FEATURES];
         match self {
             Self::Arrays(all) => {
-                for (slot, s) in given.iter_mut().zip(all.torques.iter().chain(all.speeds)) {
-                    *slot = &s[points.clone()];
+                for ((slot, s), own) in given.iter_mut().zip(all.torques.iter().chain(all.speeds)).zip(inputs) {
+                    let s = &s[points.clone()];
+                    *slot = match train.divides && is_tiny(train.arch, s) {
+                        true => {
+                            own[..s.len()].copy_from_slice(s);
+                            without_tiny(&mut own[..s.len()])
+                        }
+                        false => s,
+                    };
                 }
             }
             Self::Grid(layout) => {
                 for (k, (slot, own)) in given.iter_mut().zip(inputs).enumerate() {
                     let input = if k < torques { speeds + k } else { k - torques };
+                    let own = &mut own[..points.len()];
                     layout.fill(input, points.clone(), own);
-                    *slot = &own[..points.len()];
+                    *slot = if train.divides && layout.is_tiny { without_tiny(own) } else { &*own };
                 }
             }
         }
@@ -70,6 +79,12 @@ impl<'s> Source<'s, '_> {
             Self::Grid(layout) => layout.fill(train.speeds + torque, points, out),
         }
     }
+}
+
+/// Zero in the place of what is too small for all digits of floating point.
+pub(super) fn without_tiny(x: &mut [f64]) -> &[f64] {
+    x.iter_mut().filter(|x| x.is_subnormal()).for_each(|x| *x = 0.0);
+    x
 }
 
 impl CompiledTrain {
@@ -211,25 +226,20 @@ impl CompiledTrain {
         mut out: SingleOut<'_>,
     ) {
         match source {
-            Source::Arrays(all) => {
-                let [w0, w1] = [0, 1].map(|k| &all.speeds[k][points.clone()]);
-                single.run(self.arch, w0, w1, &all.torques[0][points], out);
-            }
-            Source::Grid(layout) => {
-                // A grid without points has no place to begin at.
-                if layout.torque_runs && !points.is_empty() {
-                    let mut counters = [0, 1].map(|input| layout.counter(input, points.start));
-                    let mut left = points.len();
-                    let mut torque = layout.rest_of_row(2, points.start);
-                    while left > 0 {
-                        let now = &torque[..torque.len().min(left)];
-                        single.run_row(self.arch, counters.each_ref().map(|c| c.value()), now, out.take(now.len()));
-                        left -= now.len();
-                        counters.iter_mut().for_each(|c| c.advance(now.len()));
-                        torque = layout.row(2);
-                    }
-                    return;
+            // A grid without points has no place to begin at.
+            Source::Grid(layout) if layout.torque_runs && !layout.is_tiny && !points.is_empty() => {
+                let mut counters = [0, 1].map(|input| layout.counter(input, points.start));
+                let mut left = points.len();
+                let mut torque = layout.rest_of_row(2, points.start);
+                while left > 0 {
+                    let now = &torque[..torque.len().min(left)];
+                    single.run_row(self.arch, counters.each_ref().map(|c| c.value()), now, out.take(now.len()));
+                    left -= now.len();
+                    counters.iter_mut().for_each(|c| c.advance(now.len()));
+                    torque = layout.row(2);
                 }
+            }
+            _ => {
                 for start in points.clone().step_by(CHUNK) {
                     let now = start..points.end.min(start + CHUNK);
                     let [torque, w0, w1, ..] = source.given(self, now.clone(), inputs);

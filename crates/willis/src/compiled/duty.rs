@@ -171,6 +171,9 @@ impl CompileRequest {
 }
 
 /// Inputs of a batch: one slice for each prescribed speed and torque, all of one length.
+///
+/// Where an efficiency is asked for, an input below [`f64::MIN_POSITIVE`] in size counts as zero: it has not the digits of
+/// which a quotient of powers could be made.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchInputs<'a> {
     /// Prescribed speeds, rad/s.

@@ -1,4 +1,4 @@
-//! BatchInputs that form a grid: their inputs are made where they are used, and never stored.
+//! Points that form a grid: their inputs are made where they are used, and never stored.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::parts::MOST_FEATURES;
 
 /// Inputs of a batch whose points form a grid: every combination of the values of each input.
 ///
-/// BatchInputs are numbered from 0 in row-major order: the last input runs fastest, where inputs are the speeds and then the
+/// Points are numbered from 0 in row-major order: the last input runs fastest, where inputs are the speeds and then the
 /// torques. [`GridInputs::nested`] chooses another order. The results are those of
 /// [`evaluate_batch`](super::CompiledTrain::evaluate_batch) on the arrays that a grid stands for, to the last bit; a row
 /// of a power split along which only the torque varies takes about a third of the time.
@@ -79,7 +79,7 @@ impl<'a> GridInputs<'a> {
         assert_eq!((self.speeds.len(), self.torques.len()), (speeds, torques), "inputs as the request names them");
         let inputs = speeds + torques;
         let (values, stride) = ([&[][..]; MOST_FEATURES], [1; MOST_FEATURES]);
-        let mut layout = Layout { values, stride, inputs, torque_runs: false };
+        let mut layout = Layout { values, stride, inputs, torque_runs: false, is_tiny: false };
         layout.values.iter_mut().zip(self.speeds.iter().chain(self.torques)).for_each(|(to, values)| *to = values);
         let mut stride = 1;
         for at in (0..inputs).rev() {
@@ -88,6 +88,7 @@ impl<'a> GridInputs<'a> {
             stride = usize::saturating_mul(stride, layout.values[input].len());
         }
         layout.torque_runs = torques == 1 && layout.is_row(speeds);
+        layout.is_tiny = layout.values.iter().any(|values| values.iter().any(|x| x.is_subnormal()));
         layout
     }
 }
@@ -99,6 +100,8 @@ pub(crate) struct Layout<'a> {
     inputs: usize,
     /// Whether the only torque runs up or down along rows at whose points the speeds stay.
     pub torque_runs: bool,
+    /// Whether a value is too small for all digits of floating point.
+    pub is_tiny: bool,
 }
 
 impl<'a> Layout<'a> {

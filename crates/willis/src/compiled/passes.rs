@@ -53,6 +53,20 @@ pub(super) fn lane<const F: usize>(x: &[&[f64]; F], row: &[f64; F], i: usize) ->
 }
 
 lanes! {
+    /// The smallest power of two among those at the front of the numbers: 0 where one is 0 or has not all digits.
+    LeastExponent<'a> { x: &'a [f64] } -> f64 {
+        const EXPONENT: u64 = 0x7ff << 52;
+        const LANES: usize = 32;
+        let size = |x: f64| f64::from_bits(x.to_bits() & EXPONENT);
+        let (chunks, rest) = x.as_chunks::<LANES>();
+        let mut least = [f64::INFINITY; LANES];
+        for c in chunks {
+            for k in 0..LANES {
+                least[k] = if size(c[k]) < least[k] { size(c[k]) } else { least[k] };
+            }
+        }
+        rest.iter().map(|x| size(*x)).chain(least).fold(f64::INFINITY, f64::min)
+    }
     /// `out = Σ row_k x_k`.
     Combine<'a, const F> { x: [&'a [f64]; F], row: [f64; F], out: &'a mut [f64] } -> () {
         let n = out.len();
@@ -61,6 +75,12 @@ lanes! {
             out[i] = lane::<F>(&x, &row, i);
         }
     }
+}
+
+/// Whether a number is too small for all digits of floating point.
+pub(super) fn is_tiny(arch: pulp::Arch, x: &[f64]) -> bool {
+    // Nearly never, so that a quick look at the exponents says it.
+    arch.dispatch(LeastExponent { x }) == 0.0 && x.iter().any(|x| x.is_subnormal())
 }
 
 /// `out = Σ row_k x_k`.

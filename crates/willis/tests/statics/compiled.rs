@@ -704,25 +704,55 @@ fn powers_beyond_floating_point_have_no_efficiency() {
     }
 }
 
-/// Powers of a few units of the last place that floating point has tell no efficiency; none is told above one.
+/// Numbers too small for all digits of floating point tell no efficiency above one: as inputs, in whatever company, and as
+/// powers. Alone, in a batch and in a grid it is the same.
 #[test]
-fn powers_below_floating_point_have_no_efficiency() {
-    let train = power_split().build().unwrap();
-    let request = CompileRequest::new(["sun", "carrier"], ["sun"]).output(CompiledOutput::Efficiency);
-    let compiled = train.compile(&request).unwrap();
-    let mut work = compiled.workspace();
-    let torques: Vec<f64> =
-        (0..40).map(|k| 5e-324 * f64::from(k - 7)).chain((0..60).map(|k| 1e-330 * 10f64.powi(k))).collect();
-    for (sun, carrier) in [(-5.0, 0.7), (3.0, -2.0), (1.0, 0.9)] {
-        let (a, b) = (vec![sun; torques.len()], vec![carrier; torques.len()]);
-        let mut many = vec![0.5; torques.len()];
-        let input = BatchInputs { speeds: &[&a, &b], torques: &[&torques] };
-        compiled.evaluate_batch(&input, &mut work, &mut [&mut many]);
-        for (torque, many) in torques.iter().zip(&many) {
+fn numbers_below_floating_point_tell_no_efficiency_above_one() {
+    let sizes: Vec<f64> = [-0.0, 0.0, 1.0, 5.00399959e15, 1e-200, 1e200, f64::MIN_POSITIVE]
+        .into_iter()
+        .chain((1..12).map(|k| f64::from_bits(k)))
+        .chain((0..16).map(|k| f64::MIN_POSITIVE * 0.37f64.powi(k)))
+        .flat_map(|x| [x, -x])
+        .collect();
+    let chain = Train::builder("reducer")
+        .members(["sun", "carrier", "out"])
+        .terminals(["sun", "out"])
+        .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").basic_efficiency(0.98))
+        .set(SetSpec::simple("P2", ("carrier", 33), ("frame", 77), "out").basic_efficiency(0.97));
+    for (train, speeds) in [(power_split(), vec!["sun", "carrier"]), (chain, vec!["sun"])] {
+        let train = train.build().unwrap();
+        let request = CompileRequest::new(speeds.iter().copied(), ["sun"]).output(CompiledOutput::Efficiency);
+        let compiled = train.compile(&request).unwrap();
+        let mut work = compiled.workspace();
+        let grid = vec![&sizes[..]; speeds.len()];
+        let (grid, torques) = (&grid[..], [&sizes[..]]);
+        let grid = GridInputs::new(grid, &torques);
+        let mut of_grid = vec![0.5; grid.len()];
+        compiled.evaluate_grid(&grid, 0..grid.len(), &mut work, &mut [&mut of_grid]);
+        let n = sizes.len();
+        let input = |k: usize, point: usize| sizes[point / n.pow((speeds.len() - k) as u32) % n];
+        let arrays: Vec<Vec<f64>> =
+            (0..=speeds.len()).map(|k| (0..grid.len()).map(|point| input(k, point)).collect()).collect();
+        let [torque, speed] = [&arrays[speeds.len()..], &arrays[..speeds.len()]]
+            .map(|all| all.iter().map(|x| &x[..]).collect::<Vec<&[f64]>>());
+        let mut of_batch = vec![0.5; grid.len()];
+        let given = BatchInputs { speeds: &speed, torques: &torque };
+        compiled.evaluate_batch(&given, &mut work, &mut [&mut of_batch]);
+        let mut sum = [0.0];
+        compiled.sum_batch(&given, &mut work, &mut sum);
+        for point in 0..grid.len() {
+            let (w, t): (Vec<f64>, Vec<f64>) =
+                (speed.iter().map(|w| w[point]).collect(), torque.iter().map(|t| t[point]).collect());
             let mut one = [0.5];
-            compiled.evaluate(&[sun, carrier], &[*torque], &mut work, &mut one);
-            assert!((0.0..=1.0).contains(&one[0]), "{torque:e} N m at {sun} and {carrier} rad/s: {}", one[0]);
-            assert_eq!(one[0], *many, "{torque:e} N m");
+            compiled.evaluate(&w, &t, &mut work, &mut one);
+            let [one] = one;
+            assert!(one.is_nan() || (-1e-12..=1.0 + 1e-12).contains(&one), "{w:?} rad/s, {t:?} N m: {one}");
+            for other in [of_grid[point], of_batch[point]] {
+                assert!(
+                    (one - other).abs() <= 1e-12 || one.is_nan() && other.is_nan(),
+                    "{w:?}, {t:?}: {one} and {other}"
+                );
+            }
         }
     }
 }
