@@ -155,6 +155,8 @@ pub struct Kind {
     write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
     /// What begins and ends a comment; empty where the format has none.
     comment: [&'static str; 2],
+    /// Whether it is a model in motion, with inertias.
+    moves: bool,
 }
 
 /// Every format there is.
@@ -164,54 +166,63 @@ pub const KINDS: &[Kind] = &[
         about: "plain map: torque, loss, efficiency and verdict of every point",
         write: csv::write,
         comment: ["", ""],
+        moves: false,
     },
     Kind {
         id: "vecto",
         about: "VECTO transmission loss maps (.vtlm), one a gear",
         write: vecto::write,
         comment: ["# ", ""],
+        moves: false,
     },
     Kind {
         id: "modelica-loss-table",
         about: "lossTable and ratio of Modelica's LossyGear, whole gear, each state",
         write: loss_table::write,
         comment: ["  // ", ""],
+        moves: false,
     },
     Kind {
         id: "modelica",
         about: "the train as a model of Modelica's Rotational library (.mo)",
         write: modelica::write,
         comment: ["  // ", ""],
+        moves: true,
     },
     Kind {
         id: "modelica-equations",
         about: "a gear in motion as equations of Modelica, without any library (.mo)",
         write: equations::write,
         comment: ["  // ", ""],
+        moves: true,
     },
     Kind {
         id: "simscape",
         about: "efficiencies for Simscape Driveline gears (MATLAB script)",
         write: simscape::write,
         comment: ["% ", ""],
+        moves: false,
     },
     Kind {
         id: "mujoco",
         about: "actuator with gear, armature and both efficiencies (MJCF)",
         write: mujoco::write,
         comment: ["<!-- ", " -->"],
+        moves: true,
     },
     Kind {
         id: "drake",
         about: "joint actuator with gear ratio and rotor inertia (URDF)",
         write: drake::write,
         comment: ["<!-- ", " -->"],
+        moves: true,
     },
     Kind {
         id: "openfast",
         about: "GBoxEff and GBRatio of ElastoDyn, side and sign told",
         write: openfast::write,
         comment: ["! ", ""],
+        moves: false,
     },
 ];
 
@@ -264,7 +275,9 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
         let done = (found.write)(train, &ends).ok()?;
         Some(done.files.into_iter().map(|f| f.text).collect())
     };
-    Ok(complete(model, done, found.comment, &trial))
+    let done = complete(model, done, found.comment, &trial);
+    let assumptions = if found.moves { analysis::assumptions_in_motion(model.train()) } else { done.assumptions };
+    Ok(Export { assumptions, ..done })
 }
 
 /// Files, and what a reader must know of them.

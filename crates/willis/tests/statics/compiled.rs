@@ -710,7 +710,7 @@ fn powers_beyond_floating_point_have_no_efficiency() {
 fn numbers_below_floating_point_tell_no_efficiency_above_one() {
     let sizes: Vec<f64> = [-0.0, 0.0, 1.0, 5.00399959e15, 1e-200, 1e200, f64::MIN_POSITIVE]
         .into_iter()
-        .chain((1..12).map(|k| f64::from_bits(k)))
+        .chain((1..12).map(f64::from_bits))
         .chain((0..16).map(|k| f64::MIN_POSITIVE * 0.37f64.powi(k)))
         .flat_map(|x| [x, -x])
         .collect();

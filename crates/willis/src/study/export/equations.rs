@@ -15,11 +15,11 @@
 //! Each group of members that turn as one has an equation of motion. Together they are linear while the same ends drive.
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::exact::{Rational, reduce};
-use crate::kinematics::{Configuration, Element};
-use crate::train::{Contact, Curve, FRAME, MemberId, Train};
+use crate::exact::{self, Rational};
+use crate::kinematics::{Configuration, Element, Transfer};
+use crate::train::{Contact, Curve, DragMount, FRAME, Inertia, MemberId, Train};
 
-use super::loss_table::{class, string};
+use super::loss_table::string;
 use super::map::chosen;
 use super::modelica::{at_the_load, fraction};
 use super::names::{file, identifiers, line, number};
@@ -33,9 +33,9 @@ fn unfit(message: String, hint: &str) -> Diagnostics {
 }
 
 /// A sum of multiples: `1/5*x - 4*y`; `0` where nothing is left.
-fn sum<'n>(terms: impl IntoIterator<Item = (&'n Rational, &'n str)>) -> String {
+fn sum(factors: &[Rational], of: &[String]) -> String {
     let mut text = String::new();
-    for (factor, name) in terms {
+    for (factor, name) in factors.iter().zip(of) {
         if factor.is_zero() {
             continue;
         }
@@ -149,214 +149,355 @@ fn one(
         Some(all) => c.with_efficiencies(all),
         None => c,
     };
-    let redundant = c.redundant();
-    if let Some(meshes) = redundant.first() {
-        let names: Vec<&str> = meshes.iter().map(|m| train.meshes()[m.index()].name.as_str()).collect();
-        let message = format!("{title}: the torques of {} are statically indeterminate", names.join(", "));
-        return Err(unfit(message, "open a shift element, or make a shaft elastic"));
-    }
-
-    // Members that are shown, and independent speeds: those of terminals first.
-    let shown: Vec<MemberId> = (1..train.members().len()).map(MemberId).filter(|m| !c.inner[m.index()]).collect();
-    let names = identifiers(shown.iter().map(|m| train.member_name(*m)), &[]);
-    let own = |m: MemberId| -> &str { &names[shown.iter().position(|s| *s == m).expect("a member that is shown")] };
-    let order: Vec<MemberId> = train.terminals().iter().chain(&shown).copied().collect();
-    let free = c.settling(&order);
-    if free.is_empty() {
-        return Err(unfit(format!("{title}: nothing can move"), "open a shift element"));
-    }
-    let transfer = c.transfer(&free);
-    let speed_of = |m: MemberId| transfer.speeds[m.index()].as_deref().expect("settled by the independent ones");
-    let speed = |m: MemberId| if m == FRAME { "0".to_owned() } else { format!("speed_{}", own(m)) };
-    let of_free = |prefix: &str, end: &str| -> Vec<String> {
-        free.iter().map(|m| format!("{prefix}speed_{}{end}", own(*m))).collect()
-    };
-    let (free_speeds, rates) = (of_free("", ""), of_free("der(", ")"));
-    let relative = |a: MemberId, b: MemberId| match (a == FRAME, b == FRAME) {
-        (_, true) => speed(a),
-        (true, _) => format!("(-{})", speed(b)),
-        _ => format!("({} - {})", speed(a), speed(b)),
-    };
-    let difference = |a: MemberId, b: MemberId| -> Vec<Rational> {
-        speed_of(a).iter().zip(speed_of(b)).map(|(x, y)| x - y).collect()
-    };
-
-    // Whether every motion moves an inertia; a terminal without one may be asked for it.
-    let inertias: Vec<_> = train.inertias().iter().filter(|i| i.value > 0.0).collect();
-    let mut moved: Vec<Vec<Rational>> = inertias.iter().map(|i| difference(i.member, i.reference)).collect();
-    let rank = |rows: &[Vec<Rational>]| reduce(&mut rows.to_vec(), free.len()).len();
-    let mut missing = vec![];
-    for &m in train.terminals().iter().filter(|m| inertias.iter().all(|i| i.member != **m)) {
-        let before = rank(&moved);
-        moved.push(speed_of(m).to_vec());
-        if rank(&moved) > before {
-            missing.push(m);
-        } else {
-            moved.pop();
-        }
-    }
-    if rank(&moved) < free.len() {
-        let names: Vec<&str> = free.iter().map(|m| train.member_name(*m)).collect();
-        let message = format!("{title}: there is a motion of {} that moves no inertia", names.join(", "));
-        return Err(unfit(message, "give inertias to the members that turn, or make them terminals"));
-    }
-
-    let labels: Vec<String> = c.elements.iter().map(|e| label(train, e)).collect();
-    let meshes = identifiers(labels.iter().map(String::as_str), &[]);
-    let shafts = identifiers(train.shafts().iter().map(|s| s.name.as_str()), &[]);
-    let drags = identifiers(train.drags().iter().map(|d| d.name.as_str()), &[]);
-    let slides = |d: &crate::train::DragMount| d.torque.points().iter().any(|p| p[1] > 0.0);
-
-    let mut top = String::new();
-    let mut equations = String::new();
-    // What acts on the group of each member: an inertia times its acceleration, and torques.
-    let mut inert: Vec<Vec<String>> = vec![vec![]; c.nodes];
-    let mut acting: Vec<String> = vec![String::new(); c.nodes];
-    let act = |acting: &mut Vec<String>, m: MemberId, sign: &str, torque: &str| {
-        if let Some(n) = c.node(m) {
-            acting[n] += &format!(" {sign} {torque}");
-        }
-    };
-    for (k, &m) in train.terminals().iter().enumerate() {
-        if m == FRAME || train.terminals()[..k].contains(&m) {
-            continue;
-        }
-        let name = own(m);
-        let about =
-            string(&format!("torque on {} from outside, positive along a positive speed", train.member_name(m)));
-        top += &format!("  input Real torque_{name}(unit=\"N.m\") {about};\n");
-        act(&mut acting, m, "+", &format!("torque_{name}"));
-    }
-    for &m in &shown {
-        let about = string(&format!("inertia of {}", train.member_name(m)));
-        let given: f64 = inertias.iter().filter(|i| i.member == m && i.reference == FRAME).map(|i| i.value).sum();
-        let value = match (given > 0.0, missing.contains(&m), train.terminals().contains(&m)) {
-            (true, ..) => format!(" = {}", number(given)),
-            (_, true, _) => String::new(),
-            (.., true) => " = 0".to_owned(),
-            _ => continue,
-        };
-        top += &format!("  parameter Real inertia_{}(unit=\"kg.m2\"){value} {about};\n", own(m));
-        if let Some(n) = c.node(m) {
-            let rate = sum(speed_of(m).iter().zip(rates.iter().map(String::as_str)));
-            inert[n].push(product(&format!("inertia_{}", own(m)), &rate));
-        }
-    }
-    for i in inertias.iter().filter(|i| i.reference != FRAME) {
-        let about =
-            string(&format!("inertia of {} against {}", train.member_name(i.member), train.member_name(i.reference)));
-        top += &format!("  parameter Real spin_{}(unit=\"kg.m2\") = {} {about};\n", own(i.member), number(i.value));
-        let by = difference(i.member, i.reference);
-        let rate = sum(by.iter().zip(rates.iter().map(String::as_str)));
-        for (m, sign) in [(i.member, ""), (i.reference, "-")] {
-            if let Some(n) = c.node(m) {
-                inert[n].push(product(&format!("{sign}spin_{}", own(i.member)), &rate));
-            }
-        }
-    }
-    for (e, (name, what)) in c.elements.iter().zip(meshes.iter().zip(&labels)) {
-        let ends = [e.p, e.q].map(|m| train.member_name(m));
-        for (key, value, end) in [("forward", &e.forward, ends[0]), ("backward", &e.backward, ends[1])] {
-            if value.sign() <= 0 {
-                let message = format!("{title}: {end} cannot drive {what}, whose efficiency is {}", value.to_f64());
-                return Err(unfit(message, "export `fmu`, which has the state of rest of such a mesh"));
-            }
-            let about = string(&format!("efficiency of {what} where {end} drives relative to its carrier"));
-            top += &format!("  parameter Real {key}_{name}(min=0) = {} {about};\n", fraction(value));
-        }
-    }
-    if train.drags().iter().any(slides) {
-        top += &format!(
-            "  parameter Real slow(unit=\"rad/s\") = {} \"below this relative speed a drag grows with it\";\n",
-            number(SLOW)
-        );
-    }
-    for (m, name) in shown.iter().zip(&names) {
-        let about = string(&format!("speed of {}", train.member_name(*m)));
-        let start = if free.contains(m) { ", start=0, fixed=true" } else { "" };
-        top += &format!("  Real speed_{name}(unit=\"rad/s\"{start}) {about};\n");
-        if !free.contains(m) {
-            let by = sum(speed_of(*m).iter().zip(free_speeds.iter().map(String::as_str)));
-            equations += &format!("  speed_{name} = {by};\n");
-        }
-    }
-    let mut lost: Vec<String> = vec![];
-    let mut locked: Vec<&str> = vec![];
-    for (e, (name, what)) in c.elements.iter().zip(meshes.iter().zip(&labels)) {
-        for (end, m) in [("p", e.p), ("q", e.q)] {
-            let about = string(&format!("torque of {} on {what}", train.member_name(m)));
-            top += &format!("  Real {end}_{name}(unit=\"N.m\") {about};\n");
-        }
-        let ratio = &e.b / &e.a;
-        let turns = difference(e.p, e.carrier).iter().any(|x| !x.is_zero());
-        let factor = if turns {
-            let power = format!("p_{name}*{}", relative(e.p, e.carrier));
-            lost.push(format!("{power} + q_{name}*{}", relative(e.q, e.carrier)));
-            format!("*(if {power} >= 0 then forward_{name} else 1/backward_{name})")
-        } else {
-            locked.push(what);
-            String::new()
-        };
-        let torque = format!("p_{name}");
-        equations += &format!("  q_{name} = {}{factor};\n", sum([(&ratio, torque.as_str())]));
-        act(&mut acting, e.p, "-", &format!("p_{name}"));
-        act(&mut acting, e.q, "-", &format!("q_{name}"));
-        act(&mut acting, e.carrier, "+", &format!("p_{name} + q_{name}"));
-    }
-    for (s, name) in train.shafts().iter().zip(&shafts) {
-        let [a, b] = s.members;
-        let about = string(&format!("twist of {}", s.name));
-        top += &format!("  Real twist_{name}(unit=\"rad\", start=0, fixed=true) {about};\n");
-        top += &format!("  Real shaft_{name}(unit=\"N.m\") {};\n", string(&format!("torque of {}", s.name)));
-        let rate = relative(a, b);
-        equations += &format!("  der(twist_{name}) = {rate};\n");
-        let [k, d] = [s.stiffness, s.damping].map(number);
-        equations += &format!("  shaft_{name} = {k}*twist_{name} + {d}*{rate};\n");
-        lost.push(format!("{d}*{rate}^2"));
-        act(&mut acting, a, "-", &format!("shaft_{name}"));
-        act(&mut acting, b, "+", &format!("shaft_{name}"));
-    }
-    for (d, name) in train.drags().iter().zip(&drags) {
-        let [a, b] = d.members;
-        top += &format!("  Real slip_{name}(unit=\"rad/s\") {};\n", string(&format!("relative speed of {}", d.name)));
-        top += &format!("  Real drag_{name}(unit=\"N.m\") {};\n", string(&format!("torque of {}", d.name)));
-        equations += &format!("  slip_{name} = {};\n", relative(a, b));
-        let slip = format!("slip_{name}");
-        let coulomb = if slides(d) {
-            let amount = curve(&d.torque, &format!("abs({slip})"));
-            let amount = if amount.contains(' ') { format!("({amount})") } else { amount };
-            format!("{amount}*max(-1, min(1, {slip}/slow)) + ")
-        } else {
-            String::new()
-        };
-        equations += &format!("  drag_{name} = {coulomb}{}*{slip};\n", number(d.viscous));
-        lost.push(format!("drag_{name}*{slip}"));
-        act(&mut acting, a, "-", &format!("drag_{name}"));
-        act(&mut acting, b, "+", &format!("drag_{name}"));
-    }
-    for n in 0..c.nodes {
-        let left = if inert[n].is_empty() { "0".to_owned() } else { inert[n].join(" + ") };
-        let right = acting[n].trim_start_matches(" + ").trim_start();
-        let right = if right.is_empty() { "0" } else { right };
-        equations += &format!("  {left} = {right};\n");
-    }
-    top += "  output Real loss(unit=\"W\") \"loss of meshes, shafts and drags\";\n";
-    equations += &format!("  loss = {};\n", if lost.is_empty() { "0".to_owned() } else { lost.join("\n    + ") });
+    let mut class = Class::new(&c, &title)?;
+    let missing = class.without_inertia()?;
+    class.torques();
+    class.inertias(&missing);
+    class.efficiencies()?;
+    class.speeds();
+    let locked = class.meshes();
+    class.shafts();
+    class.drags();
+    class.balances();
 
     tell(train, &title, &missing, &locked, notes);
     let wanted = format!("{} {}", train.name(), of_state.map_or("", |s| &s.name));
-    let name = class(wanted.trim());
+    let name = super::loss_table::class(wanted.trim());
     let mut text = format!("model {name} {}\n", string(&super::origin(train)));
     for note in notes.iter() {
         text += &format!("  // {}\n", line(note));
     }
-    text += &format!("{top}equation\n{equations}end {name};\n");
-    let about = format!("{title}: {} independent speeds, {} meshes, no library needed", free.len(), c.elements.len());
+    text += &format!("{}equation\n{}end {name};\n", class.declarations, class.equations);
+    let speeds = count(class.free.len(), "independent speed");
+    let about = format!("{title}: {speeds}, {}, no library needed", count(c.elements.len(), "mesh"));
     Ok(ExportedFile { name: file(train.name(), of_state.map(|s| s.name.as_str()), "mo"), text, about })
 }
 
+/// How many, and of what.
+fn count(n: usize, what: &str) -> String {
+    match (n, what.ends_with("sh")) {
+        (1, _) => format!("1 {what}"),
+        (_, true) => format!("{n} {what}es"),
+        (_, false) => format!("{n} {what}s"),
+    }
+}
+
+/// What a class is made of, as it grows.
+struct Class<'c, 't> {
+    c: &'c Configuration<'t>,
+    title: &'c str,
+    /// Members that are shown, and what they are called in the text.
+    shown: Vec<MemberId>,
+    names: Vec<String>,
+    /// Members whose speeds are independent, those speeds and their rates in the text.
+    free: Vec<MemberId>,
+    free_speeds: Vec<String>,
+    rates: Vec<String>,
+    /// Speed of each member over the independent ones.
+    transfer: Transfer,
+    /// What the elements of the train are called by a reader, and in the text.
+    labels: Vec<String>,
+    elements: Vec<String>,
+    declarations: String,
+    equations: String,
+    /// What acts on each group of members that turn as one: inertias times accelerations, and torques.
+    inert: Vec<Vec<String>>,
+    acting: Vec<String>,
+    /// Terms of the lost power.
+    lost: Vec<String>,
+}
+
+impl<'c, 't> Class<'c, 't> {
+    /// Which members are shown and which speeds are independent: those of terminals first.
+    fn new(c: &'c Configuration<'t>, title: &'c str) -> Result<Self, Diagnostics> {
+        let train = c.train;
+        if let Some(meshes) = c.redundant().first() {
+            let names: Vec<&str> = meshes.iter().map(|m| train.meshes()[m.index()].name.as_str()).collect();
+            let message = format!("{title}: the torques of {} are statically indeterminate", names.join(", "));
+            return Err(unfit(message, "open a shift element, or make a shaft elastic"));
+        }
+        let shown: Vec<MemberId> = (1..train.members().len()).map(MemberId).filter(|m| !c.inner[m.index()]).collect();
+        let names = identifiers(shown.iter().map(|m| train.member_name(*m)), &[]);
+        let order: Vec<MemberId> = train.terminals().iter().chain(&shown).copied().collect();
+        let free = c.settling(&order);
+        if free.is_empty() {
+            return Err(unfit(format!("{title}: nothing can move"), "open a shift element"));
+        }
+        let labels: Vec<String> = c.elements.iter().map(|e| label(train, e)).collect();
+        let mut class = Self {
+            c,
+            title,
+            transfer: c.transfer(&free),
+            free_speeds: vec![],
+            rates: vec![],
+            elements: identifiers(labels.iter().map(String::as_str), &[]),
+            declarations: String::new(),
+            equations: String::new(),
+            inert: vec![vec![]; c.nodes],
+            acting: vec![String::new(); c.nodes],
+            lost: vec![],
+            shown,
+            names,
+            free,
+            labels,
+        };
+        class.free_speeds = class.free.iter().map(|m| class.speed(*m)).collect();
+        class.rates = class.free_speeds.iter().map(|w| format!("der({w})")).collect();
+        Ok(class)
+    }
+
+    fn train(&self) -> &'t Train {
+        self.c.train
+    }
+
+    /// What a member that is shown is called in the text.
+    fn name(&self, m: MemberId) -> &str {
+        &self.names[self.shown.iter().position(|s| *s == m).expect("a member that is shown")]
+    }
+
+    fn speed(&self, m: MemberId) -> String {
+        if m == FRAME { "0".to_owned() } else { format!("speed_{}", self.name(m)) }
+    }
+
+    /// Speed of one member relative to another, in the text.
+    fn relative(&self, a: MemberId, b: MemberId) -> String {
+        match (a == FRAME, b == FRAME) {
+            (_, true) => self.speed(a),
+            (true, _) => format!("(-{})", self.speed(b)),
+            _ => format!("({} - {})", self.speed(a), self.speed(b)),
+        }
+    }
+
+    /// Factors of the independent speeds in that of a member.
+    fn factors(&self, m: MemberId) -> &[Rational] {
+        self.transfer.speeds[m.index()].as_deref().expect("settled by the independent ones")
+    }
+
+    /// The same in the speed of one member relative to another.
+    fn difference(&self, a: MemberId, b: MemberId) -> Vec<Rational> {
+        self.factors(a).iter().zip(self.factors(b)).map(|(x, y)| x - y).collect()
+    }
+
+    /// Inertias that are not zero.
+    fn masses(&self) -> impl Iterator<Item = &'t Inertia> + use<'t> {
+        self.train().inertias().iter().filter(|i| i.value > 0.0)
+    }
+
+    fn declare(&mut self, what: &str, about: &str) {
+        self.declarations += &format!("  {what} {};\n", string(about));
+    }
+
+    /// Puts a torque on a member; on the frame it does nothing.
+    fn act(&mut self, m: MemberId, sign: &str, torque: &str) {
+        if let Some(n) = self.c.node(m) {
+            self.acting[n] += &format!(" {sign} {torque}");
+        }
+    }
+
+    /// Terminals that need an inertia which the file does not have; an error where a motion moves none all the same.
+    fn without_inertia(&self) -> Result<Vec<MemberId>, Diagnostics> {
+        let train = self.train();
+        let mut moved: Vec<Vec<Rational>> = self.masses().map(|i| self.difference(i.member, i.reference)).collect();
+        let rank = |rows: &[Vec<Rational>]| exact::rank(rows.to_vec(), self.free.len());
+        let mut missing = vec![];
+        for &m in train.terminals().iter().filter(|m| self.masses().all(|i| i.member != **m)) {
+            let before = rank(&moved);
+            moved.push(self.factors(m).to_vec());
+            if rank(&moved) > before {
+                missing.push(m);
+            } else {
+                moved.pop();
+            }
+        }
+        if rank(&moved) < self.free.len() {
+            let names: Vec<&str> = self.free.iter().map(|m| train.member_name(*m)).collect();
+            let message = format!("{}: there is a motion of {} that moves no inertia", self.title, names.join(", "));
+            return Err(unfit(message, "give inertias to the members that turn, or make them terminals"));
+        }
+        Ok(missing)
+    }
+
+    /// Torques on the terminals, each once.
+    fn torques(&mut self) {
+        let terminals = self.train().terminals();
+        for (k, &m) in terminals.iter().enumerate() {
+            if m == FRAME || terminals[..k].contains(&m) {
+                continue;
+            }
+            let torque = format!("torque_{}", self.name(m));
+            let about =
+                format!("torque on {} from outside, positive along a positive speed", self.train().member_name(m));
+            self.declare(&format!("input Real {torque}(unit=\"N.m\")"), &about);
+            self.act(m, "+", &torque);
+        }
+    }
+
+    /// Inertias against the frame, then those of members against others.
+    fn inertias(&mut self, missing: &[MemberId]) {
+        let train = self.train();
+        for m in self.shown.clone() {
+            let given: f64 = self.masses().filter(|i| i.member == m && i.reference == FRAME).map(|i| i.value).sum();
+            let value = match (given > 0.0, missing.contains(&m), train.terminals().contains(&m)) {
+                (true, ..) => format!(" = {}", number(given)),
+                (_, true, _) => String::new(),
+                (.., true) => " = 0".to_owned(),
+                _ => continue,
+            };
+            let inertia = format!("inertia_{}", self.name(m));
+            let about = format!("inertia of {}", train.member_name(m));
+            self.declare(&format!("parameter Real {inertia}(unit=\"kg.m2\"){value}"), &about);
+            if let Some(n) = self.c.node(m) {
+                let term = product(&inertia, &sum(self.factors(m), &self.rates));
+                self.inert[n].push(term);
+            }
+        }
+        for i in self.masses().filter(|i| i.reference != FRAME) {
+            let spin = format!("spin_{}", self.name(i.member));
+            let [own, other] = [i.member, i.reference].map(|m| train.member_name(m));
+            let value = number(i.value);
+            self.declare(
+                &format!("parameter Real {spin}(unit=\"kg.m2\") = {value}"),
+                &format!("inertia of {own} against {other}"),
+            );
+            let rate = sum(&self.difference(i.member, i.reference), &self.rates);
+            for (m, sign) in [(i.member, ""), (i.reference, "-")] {
+                if let Some(n) = self.c.node(m) {
+                    self.inert[n].push(product(&format!("{sign}{spin}"), &rate));
+                }
+            }
+        }
+    }
+
+    /// Efficiencies of the elements and the width of the friction of drags, as parameters.
+    fn efficiencies(&mut self) -> Result<(), Diagnostics> {
+        let (c, train) = (self.c, self.train());
+        for (k, e) in c.elements.iter().enumerate() {
+            let what = self.labels[k].clone();
+            for (key, value, end) in [("forward", &e.forward, e.p), ("backward", &e.backward, e.q)] {
+                let end = train.member_name(end);
+                if value.sign() <= 0 {
+                    let value = value.to_f64();
+                    let message = format!("{}: {end} cannot drive {what}, whose efficiency is {value}", self.title);
+                    return Err(unfit(message, "export `fmu`, which has the state of rest of such a mesh"));
+                }
+                let parameter = format!("parameter Real {key}_{}(min=0) = {}", self.elements[k], fraction(value));
+                self.declare(&parameter, &format!("efficiency of {what} where {end} drives relative to its carrier"));
+            }
+        }
+        if train.drags().iter().any(slides) {
+            self.declare(
+                &format!("parameter Real slow(unit=\"rad/s\") = {}", number(SLOW)),
+                "below this relative speed a drag grows with it",
+            );
+        }
+        Ok(())
+    }
+
+    /// Speeds: the independent ones are states, the others their combinations.
+    fn speeds(&mut self) {
+        for m in self.shown.clone() {
+            let speed = self.speed(m);
+            let is_free = self.free.contains(&m);
+            let start = if is_free { ", start=0, fixed=true" } else { "" };
+            let about = format!("speed of {}", self.train().member_name(m));
+            self.declare(&format!("Real {speed}(unit=\"rad/s\"{start})"), &about);
+            if !is_free {
+                self.equations += &format!("  {speed} = {};\n", sum(self.factors(m), &self.free_speeds));
+            }
+        }
+    }
+
+    /// Torques of the elements; those that turn as a block are returned.
+    fn meshes(&mut self) -> Vec<String> {
+        let c = self.c;
+        let mut locked = vec![];
+        for (k, e) in c.elements.iter().enumerate() {
+            let (name, what) = (self.elements[k].clone(), self.labels[k].clone());
+            let [p, q] = ["p", "q"].map(|end| format!("{end}_{name}"));
+            for (torque, m) in [(&p, e.p), (&q, e.q)] {
+                let about = format!("torque of {} on {what}", self.train().member_name(m));
+                self.declare(&format!("Real {torque}(unit=\"N.m\")"), &about);
+            }
+            let factor = if self.difference(e.p, e.carrier).iter().any(|x| !x.is_zero()) {
+                let power = format!("{p}*{}", self.relative(e.p, e.carrier));
+                self.lost.push(format!("{power} + {q}*{}", self.relative(e.q, e.carrier)));
+                format!("*(if {power} >= 0 then forward_{name} else 1/backward_{name})")
+            } else {
+                locked.push(what);
+                String::new()
+            };
+            self.equations += &format!("  {q} = {}{factor};\n", sum(&[&e.b / &e.a], std::slice::from_ref(&p)));
+            self.act(e.p, "-", &p);
+            self.act(e.q, "-", &q);
+            self.act(e.carrier, "+", &format!("{p} + {q}"));
+        }
+        locked
+    }
+
+    /// Elastic shafts: their twists are states.
+    fn shafts(&mut self) {
+        let shafts = self.train().shafts();
+        for (s, name) in shafts.iter().zip(identifiers(shafts.iter().map(|s| s.name.as_str()), &[])) {
+            let [a, b] = s.members;
+            self.declare(
+                &format!("Real twist_{name}(unit=\"rad\", start=0, fixed=true)"),
+                &format!("twist of {}", s.name),
+            );
+            self.declare(&format!("Real shaft_{name}(unit=\"N.m\")"), &format!("torque of {}", s.name));
+            let rate = self.relative(a, b);
+            let [k, d] = [s.stiffness, s.damping].map(number);
+            self.equations += &format!("  der(twist_{name}) = {rate};\n");
+            self.equations += &format!("  shaft_{name} = {k}*twist_{name} + {d}*{rate};\n");
+            self.lost.push(format!("{d}*{rate}^2"));
+            self.act(a, "-", &format!("shaft_{name}"));
+            self.act(b, "+", &format!("shaft_{name}"));
+        }
+    }
+
+    /// Drags: friction that changes its sign within the width `slow`, and a viscous part.
+    fn drags(&mut self) {
+        let drags = self.train().drags();
+        for (d, name) in drags.iter().zip(identifiers(drags.iter().map(|d| d.name.as_str()), &[])) {
+            let [a, b] = d.members;
+            let slip = format!("slip_{name}");
+            self.declare(&format!("Real {slip}(unit=\"rad/s\")"), &format!("relative speed of {}", d.name));
+            self.declare(&format!("Real drag_{name}(unit=\"N.m\")"), &format!("torque of {}", d.name));
+            self.equations += &format!("  {slip} = {};\n", self.relative(a, b));
+            let coulomb = if slides(d) {
+                let amount = curve(&d.torque, &format!("abs({slip})"));
+                let amount = if amount.contains(' ') { format!("({amount})") } else { amount };
+                format!("{amount}*max(-1, min(1, {slip}/slow)) + ")
+            } else {
+                String::new()
+            };
+            self.equations += &format!("  drag_{name} = {coulomb}{}*{slip};\n", number(d.viscous));
+            self.lost.push(format!("drag_{name}*{slip}"));
+            self.act(a, "-", &format!("drag_{name}"));
+            self.act(b, "+", &format!("drag_{name}"));
+        }
+    }
+
+    /// The equation of motion of each group, and the loss.
+    fn balances(&mut self) {
+        for (inert, acting) in self.inert.iter().zip(&self.acting) {
+            let left = if inert.is_empty() { "0".to_owned() } else { inert.join(" + ") };
+            let right = acting.trim_start_matches(" + ").trim_start();
+            let right = if right.is_empty() { "0" } else { right };
+            self.equations += &format!("  {left} = {right};\n");
+        }
+        self.declare("output Real loss(unit=\"W\")", "loss of meshes, shafts and drags");
+        let lost = if self.lost.is_empty() { "0".to_owned() } else { self.lost.join("\n    + ") };
+        self.equations += &format!("  loss = {lost};\n");
+    }
+}
+
+/// Whether a drag has friction that does not vanish with the speed.
+fn slides(drag: &DragMount) -> bool {
+    drag.torque.points().iter().any(|p| p[1] > 0.0)
+}
+
 /// What the reader of the equations must know.
-fn tell(train: &Train, title: &str, missing: &[MemberId], locked: &[&str], notes: &mut Vec<String>) {
+fn tell(train: &Train, title: &str, missing: &[MemberId], locked: &[String], notes: &mut Vec<String>) {
     let elements = if train.shift_elements().is_empty() {
         String::new()
     } else {
@@ -373,7 +514,8 @@ fn tell(train: &Train, title: &str, missing: &[MemberId], locked: &[&str], notes
         notes.push(format!("not in the file, parameters without a value: the inertias of {}", names.join(", ")));
     }
     if !locked.is_empty() {
-        notes.push(format!("{title}: {} turns as a block and loses nothing", locked.join(", ")));
+        let does = if locked.len() == 1 { "turns as a block and loses" } else { "turn as a block and lose" };
+        notes.push(format!("{title}: {} {does} nothing", locked.join(", ")));
     }
     if train.drags().iter().any(|d| d.peak > 1.0) {
         notes.push("drags break away at the torque at which they slide: their `peak` is left out".to_owned());
