@@ -34,7 +34,7 @@ pub fn options(command: Command) -> Command {
                 .long("shard")
                 .value_name("K/N")
                 .value_parser(shard)
-                .help("Only this part of the sweep, 3/16; `willis merge` puts the parts together"),
+                .help("Only this part of the work: 3/16 is the third of sixteen; `willis merge` puts the parts together"),
         )
         .arg(
             Arg::new("threads")

@@ -34,7 +34,7 @@ pub(crate) use heat::{Losses as HeatOfLosses, NoHeat, placed as heat_placed};
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
 pub use series::{MemberNumbers, PointNumbers};
-pub(crate) use series::{PointSeries, Told};
+pub(crate) use series::{Ancestors, PointSeries, Told};
 pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, ShaftTableRequest, shaft_table};
 pub use variators::{MachineReport, VariatorReport};
 

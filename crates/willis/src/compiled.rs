@@ -498,7 +498,8 @@ impl<'t> Compiler<'t> {
             drags[at].viscous += d.viscous;
         }
         let place = |n: usize| order.iter().position(|o| *o == n).expect("checked above");
-        Single::new(general, place(terminals[0]), [place(terminals[1]), place(terminals[2])], drags)
+        let divides = columns.contains(&Column::Efficiency);
+        Single::new(general, place(terminals[0]), [place(terminals[1]), place(terminals[2])], drags, divides)
     }
 
     fn column(

@@ -6,6 +6,7 @@
 //! `i128` until it no longer fits, then a big integer; no operation can overflow or round.
 
 pub(crate) mod blocks;
+mod long;
 mod polyhedron;
 pub mod residue;
 
@@ -85,6 +86,14 @@ impl Rational {
         match &self.0 {
             Repr::Small(r) => BigRational::new_raw((*r.numer()).into(), (*r.denom()).into()),
             Repr::Big(r) => (**r).clone(),
+        }
+    }
+
+    /// Numerator and denominator.
+    fn long(&self) -> long::Long<'_> {
+        match &self.0 {
+            Repr::Small(r) => (Cow::Owned((*r.numer()).into()), Cow::Owned((*r.denom()).into())),
+            Repr::Big(r) => (Cow::Borrowed(r.numer()), Cow::Borrowed(r.denom())),
         }
     }
 
@@ -349,7 +358,7 @@ mod word {
 }
 
 macro_rules! operator {
-    ($trait:ident, $method:ident, $checked:ident, $op:tt) => {
+    ($trait:ident, $method:ident, $checked:ident) => {
         impl $trait<&Rational> for &Rational {
             type Output = Rational;
             fn $method(self, other: &Rational) -> Rational {
@@ -359,27 +368,27 @@ macro_rules! operator {
                         return Rational(Repr::Small(r));
                     }
                 }
-                Rational::from_big(self.big() $op other.big())
+                Rational::from_big(long::$method(self.long(), other.long()))
             }
         }
         impl $trait<Rational> for Rational {
             type Output = Rational;
-            fn $method(self, other: Rational) -> Rational { &self $op &other }
+            fn $method(self, other: Rational) -> Rational { (&self).$method(&other) }
         }
         impl $trait<&Rational> for Rational {
             type Output = Rational;
-            fn $method(self, other: &Rational) -> Rational { &self $op other }
+            fn $method(self, other: &Rational) -> Rational { (&self).$method(other) }
         }
         impl $trait<Rational> for &Rational {
             type Output = Rational;
-            fn $method(self, other: Rational) -> Rational { self $op &other }
+            fn $method(self, other: Rational) -> Rational { self.$method(&other) }
         }
     };
 }
-operator!(Add, add, checked_add, +);
-operator!(Sub, sub, checked_sub, -);
-operator!(Mul, mul, checked_mul, *);
-operator!(Div, div, checked_div, /);
+operator!(Add, add, checked_add);
+operator!(Sub, sub, checked_sub);
+operator!(Mul, mul, checked_mul);
+operator!(Div, div, checked_div);
 
 impl AddAssign<Rational> for Rational {
     fn add_assign(&mut self, other: Rational) {
@@ -621,6 +630,30 @@ mod tests {
         let words = [0, 1, -1, 2, 3, 6, -12, 35, 1 << 31, (1 << 62) - 1, i64::MAX, i64::MIN + 1, i64::MIN];
         let parts: Vec<Rational> =
             (words.iter()).flat_map(|&n| words.iter().filter(|d| **d > 0).map(move |&d| Rational::new(n, d))).collect();
+        for a in &parts {
+            for b in &parts {
+                let all = [(a + b, a.big() + b.big()), (a - b, a.big() - b.big()), (a * b, a.big() * b.big())];
+                let quotient = (!b.is_zero()).then(|| (a / b, a.big() / b.big()));
+                for (found, exact) in all.into_iter().chain(quotient) {
+                    let found = found.big();
+                    assert_eq!((found.numer(), found.denom()), (exact.numer(), exact.denom()), "{a} and {b}");
+                }
+            }
+        }
+    }
+
+    /// Of lengths that differ and that do not, with divisors in common and without.
+    #[test]
+    fn long_fractions_are_those_of_the_library() {
+        let power = |n: i64, k: usize| (0..k).fold(Rational::ONE, |x, _| x * Rational::from(n));
+        let mut parts: Vec<Rational> = vec![Rational::ZERO, Rational::ONE, Rational::new(-7, 3), Rational::new(35, 6)];
+        for (k, [n, d]) in [[7, 3], [35, 6], [2, 5], [101, 97]].into_iter().enumerate() {
+            for length in [20, 45, 46, 90] {
+                parts.push(&power(n, length + k) / &power(d, length));
+                parts.push(-(&power(d, length) / &(&power(n, length) + &Rational::ONE)));
+                parts.push(&power(n, length) / &Rational::from(d));
+            }
+        }
         for a in &parts {
             for b in &parts {
                 let all = [(a + b, a.big() + b.big()), (a - b, a.big() - b.big()), (a * b, a.big() * b.big())];

@@ -113,6 +113,15 @@ pub struct Configuration<'t> {
     rank: usize,
 }
 
+/// All that the speeds and the equations of a [configuration](Configuration) without variators follow from, whatever its
+/// efficiencies.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Layout {
+    node_of: Vec<Node>,
+    inner: Vec<bool>,
+    elements: Vec<(Vec<Link>, [MemberId; 3], [Rational; 2])>,
+}
+
 /// Speeds of every member as combinations of prescribed ones.
 #[derive(Clone, Debug)]
 pub struct Transfer {
@@ -247,6 +256,16 @@ impl<'t> Configuration<'t> {
         };
         c.rank = exact::rank(c.rows(0), nodes);
         c
+    }
+
+    /// What another configuration must have too to turn like this one.
+    pub(crate) fn layout(&self) -> Layout {
+        let element = |e: &Element| (e.links.clone(), [e.p, e.q, e.carrier], [e.a.clone(), e.b.clone()]);
+        Layout {
+            node_of: self.node_of.clone(),
+            inner: self.inner.clone(),
+            elements: self.elements.iter().map(element).collect(),
+        }
     }
 
     /// The same with terminals that turn as one, but not all of them, kept apart: what couples them for good or in this

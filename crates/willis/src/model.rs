@@ -6,9 +6,10 @@
 mod target;
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::train::{Document, Reading, Specification, Train};
+use crate::train::{Document, Key, Reading, Specification, Train};
 
 pub use target::{ShaftRef, Target};
 pub(crate) use target::{oil_temperature, quantity};
@@ -51,6 +52,8 @@ pub struct Model {
     specification: Specification,
     /// Where everything stands in the text, and what was said when it was read.
     reading: Reading,
+    /// Keys from which nothing else follows, each with its place among the inputs of the train.
+    alone: OnceLock<Vec<(Key, usize)>>,
 }
 
 impl Model {
@@ -120,6 +123,7 @@ impl Model {
             train,
             specification,
             reading,
+            alone: OnceLock::new(),
         })
     }
 
@@ -246,10 +250,9 @@ impl Model {
     /// # Errors
     /// What is wrong with it then.
     pub(crate) fn train_with(&self, document: &Document, settings: &[(&Target, String)]) -> Result<Train, Diagnostics> {
-        let of_file = |t: &Target| matches!(t, Target::File(_));
-        let mut train = match settings.iter().any(|s| of_file(s.0)) {
-            false => self.train.clone(),
-            true => {
+        let mut train = match self.with_numbers(settings) {
+            Some(train) => train,
+            None => {
                 let mut document = document.clone();
                 for (target, value) in settings {
                     let Target::File(key) = target else { continue };
@@ -270,6 +273,24 @@ impl Model {
             }
         }
         Ok(train)
+    }
+
+    /// The train with other values of its file without a reading of the text, where nothing else of it follows from them.
+    fn with_numbers(&self, settings: &[(&Target, String)]) -> Option<Train> {
+        let mut train = self.train.clone();
+        for (target, value) in settings {
+            let Target::File(key) = target else { continue };
+            let (_, input) = self.alone().iter().find(|(own, _)| own == key)?;
+            train.set_input(*input, key.measure, value)?;
+        }
+        Some(train)
+    }
+
+    fn alone(&self) -> &[(Key, usize)] {
+        self.alone.get_or_init(|| {
+            let all = self.train.inputs_alone();
+            all.filter_map(|(k, input)| Some((self.document.find(&input.path).ok()?, k))).collect()
+        })
     }
 }
 

@@ -75,7 +75,7 @@ pub struct Design {
     /// all trains where there are no more, else those that no other one beats. With 0 mesh efficiencies rank. Default: 500.
     #[cfg_attr(feature = "clap", arg(long, value_name = "TRAINS"))]
     pub recompute: Option<u64>,
-    /// Give these rows as train files, by their numbers: 3, or 1,2,5 into a folder.
+    /// Write the train files of these rows: 3, or 1,2,5 into a folder.
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "ROWS"))]
     pub write: Vec<u64>,
     /// Give the train with these teeth as a train file, without a search: 12/47/105/40/99 as in a row, of several sets
@@ -85,10 +85,10 @@ pub struct Design {
         arg(long, value_delimiter = ',', value_name = "TEETH", conflicts_with_all = ["write", "shard", "all", "resume"])
     )]
     pub teeth: Vec<String>,
-    /// Search only a part of the space: 2/8 is the second of eight.
+    /// Only this part of the work: 3/16 is the third of sixteen.
     #[cfg_attr(feature = "clap", arg(long, value_name = "K/N"))]
     pub shard: Option<String>,
-    /// Go on with what --progress wrote; several times to put parts together.
+    /// Go on from what --progress kept; several times to put parts together.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.json"))]
     pub resume: Vec<Attachment>,
 }
@@ -235,7 +235,7 @@ impl Question for Design {
         Extra {
             name: "progress",
             value: "FILE.json",
-            about: "Write how far the search is into this file, to go on with it",
+            about: "Keep what is finished in this file, to go on with it",
         },
     ];
     const IS_CUT: bool = true;

@@ -29,7 +29,7 @@ pub struct Heat {
     /// Only this operation.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
-    /// Only operations that run in this state.
+    /// Only operations that run in this state of the shift table.
     #[cfg_attr(feature = "clap", arg(long, value_name = "STATE"))]
     pub state: Option<String>,
     /// How long the warm-up takes: '2 h'. Default: five time constants.

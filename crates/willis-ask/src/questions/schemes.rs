@@ -93,8 +93,8 @@ pub struct Schemes {
     /// efficiency (the largest of the worst gear). Default: found.
     #[cfg_attr(feature = "clap", arg(long, value_name = "ORDER"))]
     pub order: Option<String>,
-    /// How many are shown. Default: 10, or as many as --write names.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
+    /// Show so many rows. Default: 10, or as many as --write names.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ROWS"))]
     pub top: Option<usize>,
     /// Examine one of so many layouts: a sample, in which nothing is complete.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
@@ -114,13 +114,13 @@ pub struct Schemes {
     /// Freedoms of a hybrid with no clutch closed. Default: 3.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub mobility: Option<usize>,
-    /// Write the train files of these rows: 3, or 1,2,5 with a folder as --output.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "ROW", value_delimiter = ','))]
+    /// Write the train files of these rows: 3, or 1,2,5 into a folder.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "ROWS", value_delimiter = ','))]
     pub write: Vec<usize>,
-    /// Search only this part of the space: 3/16. --progress keeps what it finds.
+    /// Only this part of the work: 3/16 is the third of sixteen.
     #[cfg_attr(feature = "clap", arg(long, value_name = "K/N"))]
     pub shard: Option<String>,
-    /// Go on from what --progress kept of the same wish; several times for several parts.
+    /// Go on from what --progress kept; several times to put parts together.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.json"))]
     pub resume: Vec<Attachment>,
 }

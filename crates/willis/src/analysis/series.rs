@@ -3,14 +3,16 @@
 //! A point whose directions of motion and drivers are those of one before it needs no exact statics: its losses and
 //! torques are brought into agreement in floating point, in the same steps as those of any other point with laws, and a
 //! bound on rounding shows that there is no other equilibrium. So its numbers are the same to the last bit. Every point
-//! of which that is not beyond doubt is answered the long way.
+//! of which that is not beyond doubt is answered the long way. It is so too where the train changes and turns as before,
+//! with another roughness or another law.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
 use crate::heat::{HeatVerdict, Limits, Source, balance};
-use crate::kinematics::{Configuration, Motion, Transfer};
+use crate::kinematics::{Configuration, Layout, Motion, Transfer};
 use crate::operating_point::{Physics, Step};
 use crate::power_flow::{External, MeshFlow};
 use crate::train::heat::Heat;
@@ -23,7 +25,7 @@ use super::operation::Pattern;
 use super::rounds::{Acting, Agreed, KnownIdle, Rounds};
 use super::solution::{efficiency, held, member};
 use super::words::{self, Finding};
-use super::{Losses, OperationReport, OutsideLaw, Role, SolutionReport, Why, at_its_temperature};
+use super::{LossSource, Losses, OperationReport, OutsideLaw, Role, SolutionReport, Why, at_its_temperature};
 
 /// Most patterns of drivers that are kept of points that prescribe the same.
 const MOST_PATTERNS: usize = 16;
@@ -103,14 +105,33 @@ pub(crate) enum Told {
     /// All that is known, with its warnings and notes.
     Whole(Box<OperationReport>, Diagnostics),
     /// The numbers of a point with exactly one equilibrium, what is to be said of that, warnings and notes, and which laws
-    /// they are about.
-    Numbers { numbers: PointNumbers, why: Option<Why>, notes: Diagnostics, outside: Vec<OutsideLaw> },
+    /// they are about. `sources` are the losses by source, largest first, where they are asked for.
+    Numbers {
+        numbers: PointNumbers,
+        sources: Vec<LossSource>,
+        why: Option<Why>,
+        notes: Diagnostics,
+        outside: Vec<OutsideLaw>,
+    },
 }
 
 /// Answers at many operating points of one train.
 pub(crate) struct PointSeries<'t> {
     train: &'t Train,
     situations: Vec<Situation<'t>>,
+    before: Ancestors,
+}
+
+/// What is known of trains before: which ends drive at points that prescribe the same.
+#[derive(Default)]
+pub(crate) struct Ancestors(Vec<Ancestor>);
+
+/// What is left of a situation when its train is gone.
+struct Ancestor {
+    asked: Asked,
+    layout: Layout,
+    transfer: Transfer,
+    patterns: Vec<Arc<Pattern>>,
 }
 
 /// What points that prescribe the same quantities have in common.
@@ -119,7 +140,7 @@ struct Situation<'t> {
     c: Configuration<'t>,
     transfer: Transfer,
     physics: Physics<'t>,
-    patterns: Vec<Pattern>,
+    patterns: Vec<Arc<Pattern>>,
     /// Of the last point: its neighbour may turn alike.
     idle: Option<KnownIdle>,
 }
@@ -154,7 +175,26 @@ impl Asked {
 
 impl<'t> PointSeries<'t> {
     pub fn new(train: &'t Train) -> Self {
-        Self { train, situations: vec![] }
+        Self::after(train, Ancestors::default())
+    }
+
+    /// Of a train that may turn like one before.
+    pub fn after(train: &'t Train, before: Ancestors) -> Self {
+        Self { train, situations: vec![], before }
+    }
+
+    /// What the series of another train can take over.
+    pub fn into_ancestors(self) -> Ancestors {
+        let own = self.situations.into_iter().filter(|s| !s.patterns.is_empty());
+        let mut all: Vec<Ancestor> = own
+            .map(|s| Ancestor { asked: s.asked, layout: s.c.layout(), transfer: s.transfer, patterns: s.patterns })
+            .collect();
+        for old in self.before.0 {
+            if all.len() < MOST_SITUATIONS && !all.iter().any(|a| a.asked == old.asked && a.layout == old.layout) {
+                all.push(old);
+            }
+        }
+        Ancestors(all)
     }
 
     /// All that is known of a point.
@@ -162,9 +202,9 @@ impl<'t> PointSeries<'t> {
         self.settled(operation).map(|(told, _)| told)
     }
 
-    /// The numbers of a point, or all that is known of it.
-    pub fn numbers(&mut self, operation: &Operation) -> Result<Told, Diagnostics> {
-        if let Some(told) = self.quick(operation) {
+    /// The numbers of a point, with its losses by source where `sources` are asked for, or all that is known of it.
+    pub fn numbers(&mut self, operation: &Operation, sources: bool) -> Result<Told, Diagnostics> {
+        if let Some(told) = self.quick(operation, sources) {
             return Ok(told);
         }
         let (told, pattern) = self.settled(operation)?;
@@ -173,7 +213,7 @@ impl<'t> PointSeries<'t> {
             && situation.patterns.len() < MOST_PATTERNS
             && !situation.patterns.iter().any(|known| known.is_like(&pattern))
         {
-            situation.patterns.push(pattern);
+            situation.patterns.push(Arc::new(pattern));
         }
         Ok(told)
     }
@@ -206,17 +246,25 @@ impl<'t> PointSeries<'t> {
         let speeds: Vec<MemberId> = operation.speeds.iter().map(|s| s.0).collect();
         let keep: Vec<MemberId> = speeds.iter().copied().chain(physics.visible()).collect();
         let c = Configuration::new(train, engaged, &operation.fixed, &keep);
-        let transfer = c.transfer(&speeds);
+        let layout = c.layout();
+        let alike = self.before.0.iter().find(|a| a.asked.is_of(operation) && a.layout == layout);
+        let (transfer, patterns) = match alike {
+            Some(alike) => (alike.transfer.clone(), alike.patterns.clone()),
+            None => (c.transfer(&speeds), vec![]),
+        };
         let asked = Asked::of(operation);
-        self.situations.push(Situation { asked, c, transfer, physics, patterns: vec![], idle: None });
+        self.situations.push(Situation { asked, c, transfer, physics, patterns, idle: None });
         self.situations.last_mut()
     }
 
     /// The numbers of a point, where floating point leaves no doubt of them.
-    fn quick(&mut self, operation: &Operation) -> Option<Told> {
+    fn quick(&mut self, operation: &Operation, sources: bool) -> Option<Told> {
         let train = self.train;
-        let known = self.situations.iter_mut().find(|s| s.asked.is_of(operation));
-        let Situation { c, transfer, physics, patterns, idle, .. } = known?;
+        let is_known = self.situations.iter().any(|s| s.asked.is_of(operation));
+        if !is_known && !self.before.0.iter().any(|a| a.asked.is_of(operation)) {
+            return None;
+        }
+        let Situation { c, transfer, physics, patterns, idle, .. } = self.situation(operation)?;
         let motion = c.motion_by(transfer, &operation.speeds).ok().filter(|motion| motion.deviation.is_none())?;
         if !(0..motion.speeds.len()).all(|m| motion.si(MemberId(m)).is_some_and(f64::is_finite)) {
             return None;
@@ -256,7 +304,8 @@ impl<'t> PointSeries<'t> {
             members: (1..train.members.len()).map(|m| member(&motion, &flow, &held, MemberId(m))).collect(),
             drivers: flow.meshes.iter().map(driver).collect(),
         };
-        Some(Told::Numbers { numbers, why, notes, outside })
+        let sources = if sources { physics.sources(step, &flow) } else { vec![] };
+        Some(Told::Numbers { numbers, sources, why, notes, outside })
     }
 }
 

@@ -81,9 +81,9 @@ impl<'s> Source<'s, '_> {
     }
 }
 
-/// Zero in the place of what is too small for all digits of floating point.
+/// Zero of the same sign in the place of what is too small for all digits of floating point.
 pub(super) fn without_tiny(x: &mut [f64]) -> &[f64] {
-    x.iter_mut().filter(|x| x.is_subnormal()).for_each(|x| *x = 0.0);
+    x.iter_mut().filter(|x| x.is_subnormal()).for_each(|x| *x = 0f64.copysign(*x));
     x
 }
 
@@ -226,6 +226,10 @@ impl CompiledTrain {
         mut out: SingleOut<'_>,
     ) {
         match source {
+            Source::Arrays(all) => {
+                let [w0, w1] = [0, 1].map(|k| &all.speeds[k][points.clone()]);
+                single.run(self.arch, w0, w1, &all.torques[0][points], out);
+            }
             // A grid without points has no place to begin at.
             Source::Grid(layout) if layout.torque_runs && !layout.is_tiny && !points.is_empty() => {
                 let mut counters = [0, 1].map(|input| layout.counter(input, points.start));
@@ -239,7 +243,7 @@ impl CompiledTrain {
                     torque = layout.row(2);
                 }
             }
-            _ => {
+            Source::Grid(_) => {
                 for start in points.clone().step_by(CHUNK) {
                     let now = start..points.end.min(start + CHUNK);
                     let [torque, w0, w1, ..] = source.given(self, now.clone(), inputs);

@@ -22,7 +22,13 @@ pub(super) struct Single {
     loaded: usize,
     /// Whether the open shafts are asked for in the other order than that of their places, in which they are kept.
     swapped: bool,
+    /// Bits that are kept of an input that has not all digits.
+    tiny: u64,
 }
+
+/// All bits but those of the size.
+const SIGN: u64 = 1 << 63;
+const EXPONENT: u64 = 0x7ff << 52;
 
 /// Where the results of [`Single`] go.
 #[derive(Default)]
@@ -161,7 +167,8 @@ impl Stretch {
 }
 
 impl Single {
-    pub fn new(g: &General, loaded: usize, open: [usize; 2], drag: [ShaftDrag; 3]) -> Option<Self> {
+    /// `divides`: an efficiency is asked for, for which inputs without all digits count as zero.
+    pub fn new(g: &General, loaded: usize, open: [usize; 2], drag: [ShaftDrag; 3], divides: bool) -> Option<Self> {
         let p = g.parts();
         if p.columns.len() != 1 || g.moving() != 1 || !p.certified || p.torques != 1 || p.speeds != 2 {
             return None;
@@ -189,6 +196,7 @@ impl Single {
             drag,
             loaded,
             swapped,
+            tiny: if divides { SIGN } else { u64::MAX },
         })
     }
 
@@ -211,7 +219,11 @@ impl Single {
     /// One point.
     #[inline(always)]
     fn point<const LOADED: usize>(&self, w0: f64, w1: f64, torque: f64) -> SinglePoint {
-        self.at::<LOADED>(w0, w1).point(torque)
+        let whole = |x: f64| {
+            let bits = x.to_bits();
+            f64::from_bits(bits & if bits & EXPONENT == 0 { self.tiny } else { u64::MAX })
+        };
+        self.at::<LOADED>(whole(w0), whole(w1)).point(whole(torque))
     }
 
     pub fn run(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], mut out: SingleOut<'_>) {

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{OperationReport, PointNumbers, PointSeries, SolutionReport, Told, Verdict};
+use crate::analysis::{
+    Ancestors, LossSource, OperationReport, PointNumbers, PointSeries, SolutionReport, Told, Verdict,
+};
 use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Ratio};
@@ -118,6 +120,19 @@ pub struct PointAnswer {
     pub ratio: Option<f64>,
     /// Speeds that are prescribed, in rpm: as they are written, where they are written so.
     pub(super) prescribed_rpm: Vec<(MemberId, f64)>,
+    /// Losses by source, where they were asked for without the whole solution.
+    sources: Vec<LossSource>,
+}
+
+/// How much is asked of each of many points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Detail {
+    /// Its numbers.
+    Numbers,
+    /// Its numbers, and its losses by source.
+    Sources,
+    /// All that is known of it.
+    Whole,
 }
 
 impl PointAnswer {
@@ -139,11 +154,11 @@ impl PointAnswer {
                 let answer = Self { reason, solution, numbers, ratio, ..Self::blank(verdict.into()) };
                 (answer, speed_deviation.map(|d| d.relative), notes, outside_laws)
             }
-            Ok(Told::Numbers { numbers, why, notes, outside }) => {
+            Ok(Told::Numbers { numbers, sources, why, notes, outside }) => {
                 let ratio = ratio(train, operation, |m| numbers.member(m)?.speed_rad_s);
                 let reason = why.map_or_else(String::new, |why| why.to_string());
                 let numbers = Some(numbers);
-                (Self { reason, numbers, ratio, ..Self::blank(PointVerdict::Unique) }, None, notes, outside)
+                (Self { reason, numbers, sources, ratio, ..Self::blank(PointVerdict::Unique) }, None, notes, outside)
             }
             Err(wrong) => return Self::refused(wrong),
         };
@@ -177,8 +192,8 @@ impl PointAnswer {
     }
 
     fn blank(verdict: PointVerdict) -> Self {
-        let (reason, solution, numbers, warnings, ratio, prescribed_rpm) = Default::default();
-        Self { verdict, reason, solution, numbers, warnings, ratio, prescribed_rpm }
+        let (reason, solution, numbers, warnings, ratio, prescribed_rpm, sources) = Default::default();
+        Self { verdict, reason, solution, numbers, warnings, ratio, prescribed_rpm, sources }
     }
 
     /// Of a point that makes no question.
@@ -210,6 +225,11 @@ impl PointAnswer {
     /// Output over input power, NaN where there is none.
     pub fn efficiency(&self) -> f64 {
         self.numbers.as_ref().and_then(|s| s.efficiency).unwrap_or(f64::NAN)
+    }
+
+    /// Losses by source, largest first, where all was asked for, or [these](Detail::Sources).
+    pub(super) fn sources(&self) -> &[LossSource] {
+        self.solution.as_ref().map_or(&self.sources, |s| &s.sources)
     }
 
     /// All losses, W; NaN where there is no answer.
@@ -285,19 +305,35 @@ impl<'t> PointAnswers<'t> {
 
     /// The numbers of a point, its verdict and its warnings; the [solution](PointAnswer::solution) may be left out.
     pub fn numbers(&mut self, operation: &Operation) -> PointAnswer {
-        let told = self.series.numbers(operation);
+        self.at(operation, Detail::Numbers)
+    }
+
+    fn at(&mut self, operation: &Operation, detail: Detail) -> PointAnswer {
+        let told = match detail {
+            Detail::Whole => self.series.whole(operation),
+            Detail::Numbers | Detail::Sources => self.series.numbers(operation, detail == Detail::Sources),
+        };
         PointAnswer::told(self.train, operation, told)
     }
 
-    /// The answers to points of studies, in their order, with the train of each where there is one; those of one train that
-    /// come one after the other have it in common. `whole` asks for all that is known of each.
+    /// The answers to points of studies, in their order, with the train of each where there is one; what those of one train,
+    /// and of trains that turn like it, have in common is worked out once. `whole` asks for all that is known of each.
     pub fn each(
         points: impl IntoIterator<Item = Result<(Arc<Train>, Operation), Diagnostics>>,
         whole: bool,
+        take: impl FnMut(PointAnswer, Option<(&Arc<Train>, &Operation)>),
+    ) {
+        Self::each_with(points, if whole { Detail::Whole } else { Detail::Numbers }, take);
+    }
+
+    pub(super) fn each_with(
+        points: impl IntoIterator<Item = Result<(Arc<Train>, Operation), Diagnostics>>,
+        detail: Detail,
         mut take: impl FnMut(PointAnswer, Option<(&Arc<Train>, &Operation)>),
     ) {
         let mut points = points.into_iter();
         let mut next = points.next();
+        let mut before = Ancestors::default();
         while let Some(asked) = next.take() {
             let (train, mut operation) = match asked {
                 Ok(asked) => asked,
@@ -307,10 +343,9 @@ impl<'t> PointAnswers<'t> {
                     continue;
                 }
             };
-            let mut own = PointAnswers::new(&train);
+            let mut own = PointAnswers { train: &train, series: PointSeries::after(&train, before) };
             loop {
-                let answer = if whole { own.whole(&operation) } else { own.numbers(&operation) };
-                take(answer, Some((&train, &operation)));
+                take(own.at(&operation, detail), Some((&train, &operation)));
                 match points.next() {
                     Some(Ok((same, following))) if Arc::ptr_eq(&same, &train) => operation = following,
                     other => {
@@ -319,6 +354,7 @@ impl<'t> PointAnswers<'t> {
                     }
                 }
             }
+            before = own.series.into_ancestors();
         }
     }
 }

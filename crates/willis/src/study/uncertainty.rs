@@ -15,7 +15,7 @@ use crate::train::{Load, Measure, Operation, Store, Train, VariatorPath};
 use crate::units::{self, Quantity, with_unit};
 use crate::work::{self, Cancelled, Effort, Work};
 
-use super::answer::{LawChoice, PointAnswer, PointVerdict};
+use super::answer::{Detail, LawChoice, PointAnswer, PointAnswers, PointVerdict};
 use super::column::{Column, ColumnTable};
 use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain, rounded};
@@ -250,6 +250,22 @@ impl SampleResult {
         self.verdicts.extend(later.verdicts);
         self.values.extend(later.values);
         summary::join(&mut self.seen, &later.seen);
+    }
+
+    /// Counts what is to be said of a point.
+    fn see(&mut self, point: u64, answer: &PointAnswer) {
+        if !answer.reason.is_empty() {
+            summary::see(&mut self.seen, WarningKind::Reason(answer.verdict), &answer.reason, None, point);
+        }
+        let mut told: Vec<WarningKind> = vec![];
+        for warning in &answer.warnings {
+            // Laws are counted one by one, places and numbers are not.
+            let kind = WarningKind::Warning { code: warning.code, law: warning.law.clone() };
+            if !told.contains(&kind) {
+                summary::see(&mut self.seen, kind.clone(), &warning.message, warning.deviation, point);
+                told.push(kind);
+            }
+        }
     }
 }
 
@@ -557,41 +573,32 @@ impl<'s> UncertaintyPlan<'s> {
     /// The values at a range of points.
     pub fn evaluate(&self, points: Range<usize>, trains: &mut TrainCache) -> SampleResult {
         let mut all = SampleResult::default();
-        for point in points {
-            let answer = self.answer(point, trains);
+        let mut place = points.clone();
+        let asked = points.map(|point| self.question.at(&self.settings_at(&self.design.at(point)), trains));
+        PointAnswers::each_with(asked, Detail::Sources, |answer, _| {
+            let point = place.next().expect("as many answers as points");
             all.verdicts.push(answer.verdict);
             all.values.extend(self.values(&answer));
-            if !self.design.is_sample(point) {
-                continue;
+            if self.design.is_sample(point) {
+                all.see(point as u64, &answer);
             }
-            if !answer.reason.is_empty() {
-                summary::see(&mut all.seen, WarningKind::Reason(answer.verdict), &answer.reason, None, point as u64);
-            }
-            let mut told: Vec<WarningKind> = vec![];
-            for warning in &answer.warnings {
-                // Laws are counted one by one, places and numbers are not.
-                let kind = WarningKind::Warning { code: warning.code, law: warning.law.clone() };
-                if !told.contains(&kind) {
-                    summary::see(&mut all.seen, kind.clone(), &warning.message, warning.deviation, point as u64);
-                    told.push(kind);
-                }
-            }
-        }
+        });
         all
     }
 
     fn values(&self, answer: &PointAnswer) -> Vec<f64> {
-        let Some(s) = answer.solution.as_ref().filter(|_| answer.is_unique()) else {
+        let Some(n) = answer.numbers.as_ref().filter(|_| answer.is_unique()) else {
             return vec![f64::NAN; self.outputs.len()];
         };
-        let mut values = vec![answer.efficiency(), s.loss_w];
-        let losses = s.losses_w.all();
+        let mut values = vec![answer.efficiency(), n.loss_w];
+        let losses = n.losses_w.all();
         values.extend(Losses::of_train(self.question.model().train()).map(|k| losses[k]));
         values.extend(sources(self.question.model().train()).map(|name| {
-            let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
-            match own.peek() {
-                Some(_) => own.sum(),
-                None => match s.meshes.get(name) {
+            let mut own = answer.sources().iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
+            match (own.peek(), &answer.solution) {
+                (Some(_), _) => own.sum(),
+                (None, None) => 0.0,
+                (None, Some(s)) => match s.meshes.get(name) {
                     Some(mesh) => mesh.loss_w,
                     None => s.variators.get(name).map_or(0.0, |v| v.loss_w),
                 },

@@ -2,6 +2,7 @@
 //! place where it is read.
 
 use crate::exact::Rational;
+use crate::units;
 
 use super::described::{GivenEfficiency, GivenGear, GivenMesh, GivenSet, Parts};
 use super::heat::HeatNumber;
@@ -10,7 +11,7 @@ use super::specification::{
     EfficiencySpec, MachineEfficiencySpec, PlainGeometry, PlainSurface, PlainTooth, SetEfficiencySpec, Specification,
     ToothSpec,
 };
-use super::{BearingMount, LossPart, Lubrication, Mesh, OpenNumber, PlanetBody};
+use super::{BearingMount, LossPart, Lubrication, Measure, Mesh, OpenNumber, PlanetBody, Train};
 
 /// A continuous number of the train file, or one that stands in for it.
 #[derive(Clone, Debug)]
@@ -88,6 +89,69 @@ pub(crate) enum Slot {
     LossFactor(LossPart),
     /// A number of what carries heat away.
     Heat(HeatNumber),
+}
+
+impl Slot {
+    /// Whether no other number of a train follows from it, so that it can be set alone.
+    fn stands_alone(self) -> bool {
+        use BearingNumber as B;
+        matches!(
+            self,
+            Self::Efficiency(..)
+                | Self::Roughness(..)
+                | Self::LossFactor(_)
+                | Self::Bearing(_, B::RadialLoad | B::AxialLoad)
+                | Self::Heat(HeatNumber::Factor)
+        )
+    }
+
+    /// Sets it, where it stands alone and the value is one that a train file may have; else nothing has changed.
+    fn set(self, train: &mut Train, exact: &Rational, value: f64) -> Option<()> {
+        use BearingNumber as B;
+        let positive = value.is_finite() && value > 0.0;
+        match self {
+            Self::Efficiency(mesh, forward) if exact.sign() > 0 && *exact <= Rational::ONE => {
+                let own = &mut train.meshes[mesh].efficiency;
+                *if forward { &mut own.forward } else { &mut own.backward } = exact.clone();
+            }
+            Self::Roughness(mesh, k) if positive => train.meshes[mesh].teeth.as_mut()?.roughness[k] = value,
+            Self::LossFactor(part) if positive => train.loss_factors.factors[part as usize] = value,
+            Self::Bearing(k, B::RadialLoad) if positive => train.bearings[k].radial_load = value,
+            Self::Bearing(k, B::AxialLoad) if positive => train.bearings[k].axial_load = value,
+            Self::Heat(HeatNumber::Factor) if positive => train.heat.as_mut()?.factor = value,
+            _ => return None,
+        }
+        Some(())
+    }
+}
+
+impl Train {
+    /// Which inputs can be [set](Self::set_input) by their numbers alone.
+    pub(crate) fn inputs_alone(&self) -> impl Iterator<Item = (usize, &Input)> {
+        self.inputs.iter().enumerate().filter(|(_, i)| i.slots.iter().all(|s| s.stands_alone()))
+    }
+
+    /// Gives one input the value that a train file writes so; `None` where only a reading of the whole file tells what the
+    /// train is with it, and the train is spoiled then.
+    pub(crate) fn set_input(&mut self, k: usize, measure: Measure, text: &str) -> Option<()> {
+        let (exact, value) = match measure {
+            Measure::Number => {
+                let exact: Rational = text.parse().ok()?;
+                let value = exact.to_f64();
+                (exact, value)
+            }
+            Measure::Quantity(dimension) => {
+                let quantity = units::parse(text, dimension).ok()?;
+                (Rational::ZERO, quantity.si())
+            }
+            _ => return None,
+        };
+        self.inputs[k].value = value;
+        for slot in self.inputs[k].slots.clone() {
+            slot.set(self, &exact, value)?;
+        }
+        Some(())
+    }
 }
 
 /// A number of a bearing.

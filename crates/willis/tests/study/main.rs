@@ -12,3 +12,4 @@ mod export;
 mod sensitivity;
 mod sweep;
 mod uncertainty;
+mod vary;

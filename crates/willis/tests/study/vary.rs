@@ -1,0 +1,100 @@
+//! Trains that differ in values of their file: however they come about, one by one or one after the other, their answers are
+//! the same to the last bit.
+
+use std::sync::Arc;
+
+use willis::losses;
+use willis::model::{Model, Target};
+use willis::study::{Hold, PointAnswer, PointAnswers, PointSetup, TrainCache};
+use willis::train::{Measure, Operation, Train};
+
+use crate::common::examples;
+
+/// Every digit of an answer.
+fn all(answer: &PointAnswer) -> String {
+    format!("{answer:?}")
+}
+
+/// The numbers, verdict and warnings of an answer.
+fn numbers(answer: &PointAnswer) -> String {
+    format!("{:?} {} {:?} {:?} {:?}", answer.verdict, answer.reason, answer.numbers, answer.warnings, answer.ratio)
+}
+
+/// The number and the unit of a value as written.
+fn parts(text: &str) -> Option<(f64, &str)> {
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(text.len());
+    Some((text[..end].trim().parse().ok()?, text[end..].trim()))
+}
+
+/// A few values of every number of every example, each set alone: as a study sets it, and written into the file. Beside, all
+/// these trains one after the other.
+#[test]
+fn a_value_set_is_the_value_written() {
+    let mut set = 0;
+    for (name, text) in examples() {
+        let Ok(model) = Model::from_toml(&text) else { continue };
+        let Ok(question) = PointSetup::new(&model, None, None, Hold::AsGiven) else { continue };
+        if question.base().loads.is_empty() {
+            continue;
+        }
+        let quantities = model.document().quantities();
+        // Long files repeat themselves.
+        let given: Vec<_> = (quantities.iter())
+            .filter(|(path, key)| {
+                let question = ["operation", "scenario", "study"].iter().any(|list| path.starts_with(list));
+                matches!(key.measure, Measure::Number | Measure::Quantity(_)) && !question
+            })
+            .filter_map(|(path, key)| Some((path, model.document().value(key)?)))
+            .collect();
+        let every = given.len().div_ceil(24).max(1);
+        let mut trains: Vec<(Arc<Train>, Operation)> = vec![];
+        for (path, value) in given.iter().step_by(every) {
+            let Some((number, unit)) = parts(value) else { continue };
+            for factor in [0.97, 1.004, 0.0, -1.0] {
+                let text = format!("{:.6} {unit}", number * factor).trim().to_owned();
+                let target = Target::parse(path, &model).unwrap();
+                if !target.is_of_train() {
+                    continue;
+                }
+                let quick = question.at(&[(&target, text.clone())], &mut TrainCache::default());
+                let slow = model.with([(path, &text)]);
+                match (quick, slow) {
+                    (Ok((train, operation)), Ok(written)) => {
+                        let [own, other] = [&*train, written.train()].map(|t| PointAnswer::of(t, &operation));
+                        assert_eq!(all(&own), all(&other), "{name}: {path} = {text}");
+                        trains.push((train, operation));
+                        set += 1;
+                    }
+                    (Err(_), Err(_)) => {}
+                    // What a study does not ask of the file may be wrong there.
+                    (Ok(_), Err(wrong)) => {
+                        let aside = ["operation", "scenario", "study"];
+                        let told = wrong.to_string();
+                        assert!(aside.iter().any(|list| told.contains(list)), "{name}: {path} = {text}: {told}");
+                    }
+                    (Err(wrong), Ok(_)) => panic!("{name}: {path} = {text}: {wrong}"),
+                }
+            }
+        }
+        // Laws change which losses there are.
+        for entry in losses::entries() {
+            let target = Target::parse(&format!("law.{}", entry.family), &model).unwrap();
+            trains.extend(question.at(&[(&target, entry.id.to_owned())], &mut TrainCache::default()).ok());
+        }
+        one_after_the_other(&name, &trains);
+    }
+    assert!(set > 2000, "{set} values");
+}
+
+/// The trains in their order, then in turns with the first.
+fn one_after_the_other(name: &str, trains: &[(Arc<Train>, Operation)]) {
+    let turns = trains.iter().flat_map(|t| [t, &trains[0]]);
+    let points: Vec<_> = trains.iter().chain(turns).cloned().collect();
+    let mut k = 0;
+    PointAnswers::each(points.iter().cloned().map(Ok), false, |answer, _| {
+        let (train, operation) = &points[k];
+        assert_eq!(numbers(&answer), numbers(&PointAnswer::of(train, operation)), "{name}, train {k}");
+        k += 1;
+    });
+    assert_eq!(k, points.len());
+}
