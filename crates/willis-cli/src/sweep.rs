@@ -30,11 +30,9 @@ use table::Form;
 pub fn options(command: Command) -> Command {
     command
         .arg(
-            Arg::new("shard")
-                .long("shard")
-                .value_name("K/N")
-                .value_parser(shard)
-                .help("Only this part of the work: 3/16 is the third of sixteen; `willis merge` puts the parts together"),
+            Arg::new("shard").long("shard").value_name("K/N").value_parser(shard).help(
+                "Only this part of the work: 3/16 is the third of sixteen; `willis merge` puts the parts together",
+            ),
         )
         .arg(
             Arg::new("threads")

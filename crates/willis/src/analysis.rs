@@ -33,8 +33,8 @@ pub use heat::{HeatBasis, HeatEquilibrium, HeatFlow, HeatPoint, HeatReport, Plac
 pub(crate) use heat::{Losses as HeatOfLosses, NoHeat, placed as heat_placed};
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
-pub use series::{MemberNumbers, PointNumbers};
 pub(crate) use series::{Ancestors, PointSeries, Told};
+pub use series::{MemberNumbers, PointNumbers};
 pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, ShaftTableRequest, shaft_table};
 pub use variators::{MachineReport, VariatorReport};
 

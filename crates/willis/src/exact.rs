@@ -373,15 +373,21 @@ macro_rules! operator {
         }
         impl $trait<Rational> for Rational {
             type Output = Rational;
-            fn $method(self, other: Rational) -> Rational { (&self).$method(&other) }
+            fn $method(self, other: Rational) -> Rational {
+                (&self).$method(&other)
+            }
         }
         impl $trait<&Rational> for Rational {
             type Output = Rational;
-            fn $method(self, other: &Rational) -> Rational { (&self).$method(other) }
+            fn $method(self, other: &Rational) -> Rational {
+                (&self).$method(other)
+            }
         }
         impl $trait<Rational> for &Rational {
             type Output = Rational;
-            fn $method(self, other: Rational) -> Rational { self.$method(&other) }
+            fn $method(self, other: Rational) -> Rational {
+                self.$method(&other)
+            }
         }
     };
 }

@@ -52,8 +52,9 @@ pub struct Model {
     specification: Specification,
     /// Where everything stands in the text, and what was said when it was read.
     reading: Reading,
-    /// Keys from which nothing else follows, each with its place among the inputs of the train.
-    alone: OnceLock<Vec<(Key, usize)>>,
+    /// The train without its questions, and the keys from which nothing else of it follows, each with its place among its
+    /// inputs.
+    alone: OnceLock<(Train, Vec<(Key, usize)>)>,
 }
 
 impl Model {
@@ -275,22 +276,22 @@ impl Model {
         Ok(train)
     }
 
-    /// The train with other values of its file without a reading of the text, where nothing else of it follows from them.
+    /// The train without its questions, with other values of its file and without a reading of the text; none where more of
+    /// it follows from them.
     fn with_numbers(&self, settings: &[(&Target, String)]) -> Option<Train> {
-        let mut train = self.train.clone();
+        let (train, alone) = self.alone.get_or_init(|| {
+            let train = self.train.clone().without_questions();
+            let inputs = train.inputs_alone();
+            let keys = inputs.filter_map(|(k, input)| Some((self.document.find(&input.path).ok()?, k))).collect();
+            (train, keys)
+        });
+        let mut train = train.clone();
         for (target, value) in settings {
             let Target::File(key) = target else { continue };
-            let (_, input) = self.alone().iter().find(|(own, _)| own == key)?;
+            let (_, input) = alone.iter().find(|(own, _)| own == key)?;
             train.set_input(*input, key.measure, value)?;
         }
         Some(train)
-    }
-
-    fn alone(&self) -> &[(Key, usize)] {
-        self.alone.get_or_init(|| {
-            let all = self.train.inputs_alone();
-            all.filter_map(|(k, input)| Some((self.document.find(&input.path).ok()?, k))).collect()
-        })
     }
 }
 

@@ -811,6 +811,11 @@ impl Train {
         }
     }
 
+    /// The train alone, without what its file asks of it.
+    pub(crate) fn without_questions(self) -> Self {
+        Self { operations: vec![], scenarios: vec![], studies: vec![], ..self }
+    }
+
     /// The member of that name.
     pub fn member(&self, name: &str) -> Option<MemberId> {
         self.members.iter().position(|m| m.name == name).map(MemberId)

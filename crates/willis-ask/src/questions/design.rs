@@ -232,11 +232,7 @@ impl Question for Design {
             value: "FILE.svg",
             about: "Draw the rows as points over two objectives into this SVG file",
         },
-        Extra {
-            name: "progress",
-            value: "FILE.json",
-            about: "Keep what is finished in this file, to go on with it",
-        },
+        Extra { name: "progress", value: "FILE.json", about: "Keep what is finished in this file, to go on with it" },
     ];
     const IS_CUT: bool = true;
     type Answer = DesignFound;

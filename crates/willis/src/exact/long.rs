@@ -22,7 +22,8 @@ fn common(a: &BigInt, b: &BigInt) -> BigInt {
         return BigInt::one();
     }
     let (a, b) = (a.magnitude(), b.magnitude());
-    let (mut long, mut short) = if a < b { (Cow::Borrowed(b), Cow::Borrowed(a)) } else { (a.into(), b.into()) };
+    let (a, b) = if a < b { (b, a) } else { (a, b) };
+    let (mut long, mut short) = (Cow::Borrowed(a), Cow::Borrowed(b));
     let found = loop {
         if short.is_zero() {
             break long.into_owned();

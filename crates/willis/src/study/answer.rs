@@ -5,12 +5,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{
-    Ancestors, LossSource, OperationReport, PointNumbers, PointSeries, SolutionReport, Told, Verdict,
-};
+use crate::analysis::{Ancestors, OperationReport, PointNumbers, PointSeries, SolutionReport, Told, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Ratio};
+use crate::operating_point::LossSource;
 use crate::train::{MemberId, Operation, Train};
 use crate::units::Quantity;
 
