@@ -17,8 +17,9 @@ use willis::compiled::{
 use willis::dynamics::{Batch, FixedStep, Options, Simulation, simulate};
 use willis::model::Model;
 use willis::regimes::{RegimeSelection, regimes};
-use willis::study::{Axis, Hold, PointSetup, Sweep};
+use willis::study::{Axis, Hold, PointSetup, Sweep, UncertaintyRequest, sensitivity, uncertainty};
 use willis::train::{SetSpec, Train};
+use willis::work::Serial;
 
 /// More than this above the recorded count fails.
 const TOLERANCE: f64 = 0.05;
@@ -43,6 +44,9 @@ const TASKS: &[Task] = &[
     ("eight-speed-text-to-answer", 1, cold),
     ("physical-stage-sweep", SIDE * SIDE, physical_stage),
     ("physical-eight-speed-sweep", SIDE * SIDE, physical_eight_speed),
+    ("stage-sensitivity", 1, stage_sensitivity),
+    ("stage-uncertainty", SAMPLES, stage_uncertainty),
+    ("regimes-longest", 1, regimes_longest),
     ("chain-analyze-4", 1, |n| chain_analyzed(4, n)),
     ("chain-analyze-64", 1, |n| chain_analyzed(64, n)),
     ("chain-regimes-4", 1, |n| chain_regimes(4, n)),
@@ -67,6 +71,9 @@ const POINTS: usize = 4096;
 /// Points of a grid of two speeds and 500 torques, and of the study of `benches/map.toml` with fewer speeds.
 const GRID: usize = 4 * 2 * 500;
 const STUDY: usize = 20 * 10 * 500;
+
+/// Samples of what is uncertain.
+const SAMPLES: usize = 512;
 
 /// Values on each axis of a grid of points with computed losses.
 const SIDE: usize = 32;
@@ -233,6 +240,32 @@ fn physical_stage(n: usize) {
 fn physical_eight_speed(n: usize) {
     let text = trains::automatic_with_drags();
     physical(&text, ["input.speed=1000..5000 rpm:32", "input.torque=50..700 N m:32"], Some("3"), n);
+}
+
+/// What the rated point of the stage is sensitive to.
+fn stage_sensitivity(n: usize) {
+    let train = Train::from_toml(trains::STAGE).unwrap();
+    let rated = Selection { operation: Some("rated".into()), ..Selection::default() };
+    for _ in 0..n {
+        black_box(sensitivity(black_box(&train), &rated).unwrap());
+    }
+}
+
+/// What is uncertain of the rated point of the stage.
+fn stage_uncertainty(n: usize) {
+    let model = Model::from_toml(trains::STAGE).unwrap();
+    let request = UncertaintyRequest { operation: Some("rated".into()), samples: SAMPLES, ..Default::default() };
+    for _ in 0..n {
+        black_box(uncertainty(black_box(&model), &request, &Serial).unwrap());
+    }
+}
+
+/// The regimes of the example that takes longest.
+fn regimes_longest(n: usize) {
+    let train = Train::from_toml(include_str!("../../../examples/voltec.toml")).unwrap();
+    for _ in 0..n {
+        black_box(regimes(black_box(&train), &RegimeSelection::default()).unwrap());
+    }
 }
 
 /// Sets in series, from text to every answer of `analyze`.

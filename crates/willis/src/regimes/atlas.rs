@@ -101,7 +101,9 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     atlas.planes = cells.planes.iter().map(|f| plane(setup, f)).collect();
     atlas.regions = (0..cells.regions.len()).map(|k| region(setup, &atlas.base_speeds, &cells, k)).collect();
     let mut formulas = Formulas::new(setup, &cells);
-    atlas.regimes = regimes(setup, &cells, &atlas.regions, &mut formulas);
+    // What can happen without friction, to tell what friction makes.
+    let frictionless = without_friction(setup, &cells);
+    atlas.regimes = regimes(setup, &cells, &atlas.regions, &frictionless, &mut formulas);
     label_unloading(atlas, setup);
     // Now every plane has its name.
     bounding_planes(atlas, &cells);
@@ -109,7 +111,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     prescribed(atlas, setup);
     formulas.list(atlas);
     boundaries(atlas, setup);
-    assignments(atlas, setup);
+    assignments(atlas, setup, &frictionless);
 }
 
 /// Names of some terminals.
@@ -150,10 +152,9 @@ fn regimes(
     setup: &Setup<'_>,
     cells: &Cells,
     regions: &[RegionReport],
+    frictionless: &BTreeSet<(usize, Vec<i8>)>,
     formulas: &mut Formulas<'_, '_>,
 ) -> Vec<RegimeReport> {
-    // What can happen without friction, to tell what friction makes.
-    let frictionless = without_friction(setup);
     let ids: Vec<Vec<String>> = (cells.torques.iter().enumerate())
         .map(|(k, list)| (0..list.len()).map(|n| regime_name(setup, k, list, n)).collect())
         .collect();
@@ -799,7 +800,11 @@ pub(crate) fn assignment_order(m: usize) -> Vec<Vec<i8>> {
 }
 
 /// Every assignment of inputs and outputs, and whether it is reached.
-fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
+fn assignments(atlas: &mut Atlas, setup: &Setup<'_>, frictionless: &BTreeSet<(usize, Vec<i8>)>) {
+    let possible_without_friction = |atlas: &Atlas, powers: &[i8]| {
+        let runs = |(k, torques): &(usize, Vec<i8>)| power_signs(setup, &atlas.regions[*k].point, torques) == powers;
+        frictionless.iter().any(runs)
+    };
     let m = setup.terminals.len();
     if m > MOST_ASSIGNED {
         atlas.notes.push(format!("{m} terminals: assignments that cannot be reached are not listed"));
@@ -823,7 +828,7 @@ fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
         let (inputs, outputs) = (of(1), of(-1));
         let reach = match (own.is_empty(), outputs.is_empty()) {
             (false, false) if own.iter().all(|r| r.by_friction_only) => {
-                match possible_without_friction(atlas, setup, &powers) {
+                match possible_without_friction(atlas, &powers) {
                     true => Reach::WhereFrictionTurns,
                     false => Reach::ByFrictionOnly,
                 }
@@ -831,14 +836,10 @@ fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
             (false, false) => Reach::Reached,
             (false, true) => Reach::Dissipated,
             (true, true) => Reach::NeverDissipated,
-            (true, false) if possible_without_friction(atlas, setup, &powers) => Reach::PreventedByFriction,
+            (true, false) if possible_without_friction(atlas, &powers) => Reach::PreventedByFriction,
             (true, false) => Reach::Never,
         };
         all.push(AssignmentReport { inputs, outputs, regimes: own.iter().map(|r| r.id.clone()).collect(), reach });
     }
     atlas.assignments = all;
-}
-
-fn possible_without_friction(atlas: &Atlas, setup: &Setup<'_>, powers: &[i8]) -> bool {
-    without_friction(setup).iter().any(|(k, torques)| power_signs(setup, &atlas.regions[*k].point, torques) == powers)
 }

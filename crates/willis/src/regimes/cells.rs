@@ -183,10 +183,8 @@ pub(crate) fn efficiency_between(setup: &Setup<'_>, pattern: &Pattern, rays: [&V
     [extremum(&|a, b| a < b), extremum(&|a, b| a > b)]
 }
 
-/// Region and torque signs of every regime of the same train without losses.
-pub(crate) fn without_friction(setup: &Setup<'_>) -> BTreeSet<(usize, Vec<i8>)> {
-    let planes = setup.planes();
-    let regions = setup.speed_cells(&planes);
+/// Region and torque signs of every regime of the same train without losses, in the regions of that with losses.
+pub(crate) fn without_friction(setup: &Setup<'_>, cells: &Cells) -> BTreeSet<(usize, Vec<i8>)> {
     let mut ideal = setup.clone();
     for e in &mut ideal.c.elements {
         (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
@@ -194,10 +192,9 @@ pub(crate) fn without_friction(setup: &Setup<'_>) -> BTreeSet<(usize, Vec<i8>)> 
     if let Some(link) = &mut ideal.link {
         link.efficiency = [Rational::ONE, Rational::ONE];
     }
-    (0..regions.len())
-        .flat_map(|k| {
-            let cells = ideal.torque_cells(&regions[k].point).map_or(vec![], |(cells, _)| cells);
-            cells.into_iter().map(move |c| (k, c.signs))
-        })
-        .collect()
+    let all = cells.regions.iter().enumerate().flat_map(|(k, region)| {
+        let cells = ideal.torque_cells(&region.point).map_or(vec![], |(cells, _)| cells);
+        cells.into_iter().map(move |c| (k, c.signs))
+    });
+    all.collect()
 }

@@ -1,6 +1,10 @@
 //! A train as the regimes see it: terminals, the speeds that are free, the elements that carry
 //! load, and the forms whose signs matter.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use crate::exact::{self, Matrix, Rational, null_space};
 use crate::kinematics::{Configuration, Element};
 use crate::named::NameMap;
@@ -69,6 +73,19 @@ pub(crate) struct Setup<'t> {
     pub node_speed: Vec<Option<Vec<Rational>>>,
     /// By active element: `ω_p − ω_c` over the base speeds.
     pub sigma: Vec<Vec<Rational>>,
+    /// Of patterns that were asked for.
+    through: Through,
+}
+
+/// Terminal torques with power through the link, by pattern of drivers; a copy of a setup, whose losses may be made others,
+/// knows none.
+#[derive(Debug, Default)]
+struct Through(RefCell<BTreeMap<Pattern, Rc<Vec<Vec<Rational>>>>>);
+
+impl Clone for Through {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// The signs of the drivers, for one direction of motion: `true` when end p drives, `None` without
@@ -159,7 +176,8 @@ impl<'t> Setup<'t> {
                 node_speed[n] = Some(w.clone());
             }
         }
-        let mut setup = Self { c, terminals, base, active, free, torques: 0, link, node_speed, sigma: vec![] };
+        let (sigma, through) = Default::default();
+        let mut setup = Self { c, terminals, base, active, free, torques: 0, link, node_speed, sigma, through };
         for &j in &setup.active {
             let e = &setup.c.elements[j];
             let (Some(p), Some(carrier)) = (setup.speed(e.p), setup.speed(e.carrier)) else {
@@ -378,12 +396,7 @@ impl<'t> Setup<'t> {
                 }
                 let torque_forms = self.torque_forms(&pattern, &basis);
                 // One coefficient of the basis for each base speed.
-                let axes: Vec<Vec<Rational>> = (0..d)
-                    .map(|b| {
-                        let axis: Vec<Rational> = (0..d).map(|x| Rational::from(i64::from(x == b))).collect();
-                        self.balanced(&pattern, &torque_forms, &axis)
-                    })
-                    .collect();
+                let axes = self.axes(&pattern, &torque_forms);
                 let over_speeds = |form: &[Rational]| -> Option<Vec<Rational>> {
                     let line: Vec<Rational> = axes.iter().map(|c| arrangement::dot(form, c)).collect();
                     arrangement::normal(&line).map(|(line, _)| line)
@@ -397,10 +410,8 @@ impl<'t> Setup<'t> {
                         lines.push(line);
                     }
                 }
-                let parts: Vec<Cell> = arrangement::cells(&lines, d)
-                    .into_iter()
-                    .filter(|c| c.signs[..planes.len()] == region.signs[..])
-                    .collect();
+                let wanted = region.signs.iter().copied().chain(std::iter::repeat(0)).take(lines.len());
+                let parts: Vec<Cell> = arrangement::cells_where(&lines, &wanted.collect::<Vec<i8>>(), d);
                 for part in &parts {
                     let c = self.balanced(&pattern, &torque_forms, &part.point);
                     // Either direction of the load may fit; a force that vanishes fits both.
@@ -424,6 +435,27 @@ impl<'t> Setup<'t> {
             }
         }
         all
+    }
+
+    /// Terminal torques with power through the link over the base speeds, in which they are linear, of some size.
+    fn through(&self, pattern: &Pattern) -> Rc<Vec<Vec<Rational>>> {
+        let known = self.through.0.borrow().get(pattern).cloned();
+        known.unwrap_or_else(|| {
+            let basis = null_space(self.rows(pattern), self.active.len());
+            let forms = self.torque_forms(pattern, &basis);
+            let axes = self.axes(pattern, &forms);
+            let over = |f: &Vec<Rational>| axes.iter().map(|c| arrangement::dot(f, c)).collect();
+            let through: Rc<Vec<Vec<Rational>>> = Rc::new(forms.iter().map(over).collect());
+            self.through.0.borrow_mut().insert(pattern.clone(), through.clone());
+            through
+        })
+    }
+
+    /// The [balanced](Self::balanced) combination at each base speed alone.
+    fn axes(&self, pattern: &Pattern, torque_forms: &[Vec<Rational>]) -> Vec<Vec<Rational>> {
+        let d = self.base.len();
+        let axis = |b: usize| -> Vec<Rational> { (0..d).map(|x| Rational::from(i64::from(x == b))).collect() };
+        (0..d).map(|b| self.balanced(pattern, torque_forms, &axis(b))).collect()
     }
 
     /// Terminal torques over a basis of force vectors.
@@ -463,10 +495,7 @@ impl<'t> Setup<'t> {
 
     /// Terminal torques with power through the link, of some size; linear in the speeds.
     pub fn torques_through(&self, pattern: &Pattern, base: &[Rational]) -> Vec<Rational> {
-        let basis = null_space(self.rows(pattern), self.active.len());
-        let forms = self.torque_forms(pattern, &basis);
-        let c = self.balanced(pattern, &forms, base);
-        forms.iter().map(|f| arrangement::dot(f, &c)).collect()
+        self.through(pattern).iter().map(|row| arrangement::dot(row, base)).collect()
     }
 
     /// Terminal torques of a regime at other speeds: the same, unless there is a link.
@@ -480,15 +509,9 @@ impl<'t> Setup<'t> {
         if self.link.is_none() {
             return torques.to_vec();
         }
-        let basis = null_space(self.rows(pattern), self.active.len());
-        let forms = self.torque_forms(pattern, &basis);
-        let at = |base: &[Rational]| -> Vec<Rational> {
-            let c = self.balanced(pattern, &forms, base);
-            forms.iter().map(|f| arrangement::dot(f, &c)).collect()
-        };
-        let here = at(from);
+        let here = self.torques_through(pattern, from);
         let same = here.iter().zip(torques).all(|(a, b)| a.sign() == b.sign());
-        at(to).into_iter().map(|x| if same { x } else { -x }).collect()
+        self.torques_through(pattern, to).into_iter().map(|x| if same { x } else { -x }).collect()
     }
 
     /// Sectors of the speed space, in order around the circle for two freedoms.
