@@ -1,10 +1,12 @@
 //! How far an equilibrium is from a change: of the loss formula, to locking, and within what friction leaves open.
 
 use crate::exact::Rational;
-use crate::power_flow::Flow;
+use crate::kinematics::Configuration;
+use crate::power_flow::{Flow, Known};
 use crate::statics::{Equilibrium, Solution, torque};
 use crate::train::MemberId;
 
+use super::rounds::Rounds;
 use super::solution::Frame;
 use super::words::name_of;
 use super::{Boundary, LockMargin, Margin, StictionQuantity, StictionRange};
@@ -135,67 +137,91 @@ impl Frame<'_> {
         (nearest, resisting.lock_factor(&s))
     }
 
-    /// Ranges that friction in loaded meshes at rest leaves open: every vertex of their ρ-box.
+    /// Ranges that friction in loaded meshes at rest leaves open.
     pub fn stiction(&self, s: &Solution, flow: &Flow) -> Vec<StictionRange> {
+        if let Some(agreed) = self.agreed {
+            let (rows, columns) = self.equilibrium.solved(s);
+            let known = Known { c: self.c, rows: &rows, columns: &columns };
+            let rounds = Rounds::new(known, self.motion, self.operation, self.sigma, self.undragged);
+            if let Some(rounds) = rounds {
+                return rounds.stiction(&agreed.step, flow);
+            }
+        }
         let c = self.c;
         let stuck: Vec<usize> = (0..c.gears().len())
             .filter(|&j| {
                 let e = &c.elements[j];
                 let lossy = e.forward != Rational::ONE || e.backward != Rational::ONE;
-                lossy && s.forces[j] != 0.0 && c.sigma(e, self.motion) == Some(0)
+                lossy && s.forces[j] != 0.0 && self.sigma[j] == Some(0)
             })
             .collect();
-        if stuck.is_empty() {
-            return vec![];
-        }
-        if stuck.len() > MOST_STUCK {
-            return vec![StictionRange::new(StictionQuantity::Unbounded { meshes: stuck.len() }, None)];
-        }
-        let mut low: Vec<Option<f64>> = flow.torques.clone();
-        let mut high = low.clone();
-        let efficiency = |f: &Flow| if f.input_power > 0.0 { f.output_power / f.input_power } else { 0.0 };
-        let mut eta = (efficiency(flow), efficiency(flow));
-        for mask in 0..1u32 << stuck.len() {
-            let choice: Vec<(usize, f64)> = stuck
-                .iter()
-                .enumerate()
-                .map(|(bit, &j)| {
-                    let e = &c.elements[j];
-                    (j, if mask >> bit & 1 == 0 { e.forward.to_f64() } else { 1.0 / e.backward.to_f64() })
-                })
-                .collect();
-            let Some(shifted) = self.equilibrium.with_rho(s, &choice, &self.problem.torques) else { continue };
-            let f = stuck_flow(self, &shifted);
-            for m in 0..low.len() {
-                if let (Some(l), Some(h), Some(t)) = (low[m], high[m], f[m]) {
-                    (low[m], high[m]) = (Some(l.min(t)), Some(h.max(t)));
-                }
-            }
-            // Efficiency from the torques of the terminals.
-            let (mut power_in, mut power_out) = (0.0, 0.0);
-            for (m, t) in f.iter().enumerate() {
-                let p = t.unwrap_or(0.0) * flow.speeds[m];
-                if p > 0.0 { power_in += p } else { power_out -= p }
-            }
-            if power_in > 0.0 {
-                eta = (eta.0.min(power_out / power_in), eta.1.max(power_out / power_in));
-            }
-        }
-        let size = flow.torques.iter().flatten().fold(0.0f64, |a, t| a.max(t.abs()));
-        let mut all = Vec::new();
-        if eta.1 - eta.0 > 1e-9 {
-            all.push(StictionRange::new(StictionQuantity::Efficiency, Some(eta)));
-        }
-        for m in 1..low.len() {
-            if let (Some(l), Some(h)) = (low[m], high[m])
-                && h - l > 1e-9 * size
-            {
-                let quantity = StictionQuantity::Torque { member: c.train.members[m].name.clone() };
-                all.push(StictionRange::new(quantity, Some((l, h))));
-            }
-        }
-        all
+        let rho = |j: usize, p: bool| {
+            let e = &c.elements[j];
+            if p { e.forward.to_f64() } else { 1.0 / e.backward.to_f64() }
+        };
+        stiction(c, flow, &stuck, rho, |choice| {
+            let shifted = self.equilibrium.with_rho(s, choice, &self.problem.torques)?;
+            Some(stuck_flow(self, &shifted))
+        })
     }
+}
+
+/// Ranges that friction in `stuck` elements leaves open, which carry a force and do not move: every vertex of their ρ-box.
+/// `rho` tells ρ of an element when its end p drives and when q does, `torques` the external torques by member with these ρ in
+/// place of 1.
+pub(super) fn stiction(
+    c: &Configuration<'_>,
+    flow: &Flow,
+    stuck: &[usize],
+    rho: impl Fn(usize, bool) -> f64,
+    torques: impl Fn(&[(usize, f64)]) -> Option<Vec<Option<f64>>>,
+) -> Vec<StictionRange> {
+    if stuck.is_empty() {
+        return vec![];
+    }
+    if stuck.len() > MOST_STUCK {
+        return vec![StictionRange::new(StictionQuantity::Unbounded { meshes: stuck.len() }, None)];
+    }
+    let mut low: Vec<Option<f64>> = flow.torques.clone();
+    let mut high = low.clone();
+    let efficiency = |f: &Flow| if f.input_power > 0.0 { f.output_power / f.input_power } else { 0.0 };
+    let mut eta = (efficiency(flow), efficiency(flow));
+    let ends: Vec<[f64; 2]> = stuck.iter().map(|&j| [rho(j, true), rho(j, false)]).collect();
+    let mut choice: Vec<(usize, f64)> = stuck.iter().map(|&j| (j, 1.0)).collect();
+    for mask in 0..1usize << stuck.len() {
+        for (bit, (own, ends)) in choice.iter_mut().zip(&ends).enumerate() {
+            own.1 = ends[mask >> bit & 1];
+        }
+        let Some(f) = torques(&choice) else { continue };
+        for m in 0..low.len() {
+            if let (Some(l), Some(h), Some(t)) = (low[m], high[m], f[m]) {
+                (low[m], high[m]) = (Some(l.min(t)), Some(h.max(t)));
+            }
+        }
+        // Efficiency from the torques of the terminals.
+        let (mut power_in, mut power_out) = (0.0, 0.0);
+        for (m, t) in f.iter().enumerate() {
+            let p = t.unwrap_or(0.0) * flow.speeds[m];
+            if p > 0.0 { power_in += p } else { power_out -= p }
+        }
+        if power_in > 0.0 {
+            eta = (eta.0.min(power_out / power_in), eta.1.max(power_out / power_in));
+        }
+    }
+    let size = flow.torques.iter().flatten().fold(0.0f64, |a, t| a.max(t.abs()));
+    let mut all = Vec::new();
+    if eta.1 - eta.0 > 1e-9 {
+        all.push(StictionRange::new(StictionQuantity::Efficiency, Some(eta)));
+    }
+    for m in 1..low.len() {
+        if let (Some(l), Some(h)) = (low[m], high[m])
+            && h - l > 1e-9 * size
+        {
+            let quantity = StictionQuantity::Torque { member: c.train.members[m].name.clone() };
+            all.push(StictionRange::new(quantity, Some((l, h))));
+        }
+    }
+    all
 }
 
 /// Most elements at rest whose friction is varied, two values each.

@@ -59,11 +59,6 @@ impl Pattern {
         self.sigma == sigma && self.open == problem.open && problem.loaded.iter().all(has_equation)
     }
 
-    /// Whether every mesh that carries something moves: at rest its friction is open.
-    pub fn moves(&self) -> bool {
-        self.columns.iter().all(|c| c.p_drives.is_some())
-    }
-
     /// Whether both say the same of a point.
     pub fn is_like(&self, other: &Self) -> bool {
         let drivers = |p: &Self| p.columns.iter().map(|c| (c.element, c.p_drives)).collect::<Vec<_>>();
@@ -190,7 +185,9 @@ pub(super) fn settle_at<'t>(
         .map(|branch| Frame {
             c: &branch.c,
             motion: &motion,
+            sigma: &sigma,
             problem: &branch.problem,
+            undragged: &problem,
             equilibrium: &branch.equilibrium,
             operation,
             drags: &branch.drags,

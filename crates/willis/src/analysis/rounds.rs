@@ -2,13 +2,17 @@
 
 use std::sync::{Arc, OnceLock};
 
+use smallvec::SmallVec;
+
 use crate::kinematics::{Configuration, Motion, Node};
 use crate::operating_point::{Approach, Convergence, Idle, Physics, Step};
-use crate::power_flow::{Drag, External, Flow, Known, rho};
+use crate::power_flow::{Drag, External, Flow, Known, rho, ties};
 use crate::statics::{Equilibrium, SolvedColumn};
 use crate::train::{MemberId, Operation};
 
+use super::StictionRange;
 use super::loads::Loads;
+use super::margin::stiction;
 
 /// What all rounds have in common.
 pub(super) struct Rounds<'a> {
@@ -56,17 +60,12 @@ impl<'a> Rounds<'a> {
             return None;
         }
         let efficiencies = step.efficiencies(c.train, &self.given);
-        let dragged = step.drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]);
-        let dragged = dragged.map(|(member, torque)| (c.node(member), torque));
         let is_open = |node: Node| node.is_none_or(|n| self.problem.open.contains(&n));
-        if !dragged.clone().all(|(node, _)| is_open(node) || known.row(node).is_some()) {
+        if !self.dragged(step).all(|(node, _)| is_open(node) || known.row(node).is_some()) {
             return None;
         }
-        let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, f64)| {
-            let rho = rho(&c.elements[column.element], column.p_drives, &efficiencies);
-            column.entries.iter().for_each(|&(row, constant, slope)| add(row, rho * slope + constant));
-        };
-        let forces = known.forces(entries, self.loads.iter().copied().chain(dragged))?;
+        let of = |column: &SolvedColumn| rho(&c.elements[column.element], column.p_drives, &efficiencies);
+        let forces = self.forces(step, of)?;
         let drives = |element: usize| match forces[element] * f64::from(self.sigma[element].unwrap_or(0)) {
             0.0 => None,
             power => Some(power > 0.0),
@@ -82,6 +81,67 @@ impl<'a> Rounds<'a> {
         let relative = |d: &Drag| self.speeds[d.members[1].0] - self.speeds[d.members[0].0];
         let drag_losses = step.drags.iter().map(|d| d.torque * relative(d)).collect();
         Some(Flow { speeds: self.speeds.clone(), meshes, drag_losses, ..Flow::default() })
+    }
+
+    /// What the drags of a step exert on nodes, N m.
+    fn dragged<'s>(&'s self, step: &'s Step) -> impl Iterator<Item = (Node, f64)> + 's {
+        let both = step.drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]);
+        both.map(|(member, torque)| (self.c().node(member), torque))
+    }
+
+    /// The force in each element with the drags of a step and these ρ.
+    fn forces(&self, step: &Step, rho: impl Fn(&SolvedColumn) -> f64) -> Option<SmallVec<[f64; 8]>> {
+        let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, f64)| {
+            let rho = rho(column);
+            column.entries.iter().for_each(|&(row, constant, slope)| add(row, rho * slope + constant));
+        };
+        self.known.forces(entries, self.loads.iter().copied().chain(self.dragged(step)))
+    }
+
+    /// Ranges that friction in loaded meshes at rest leaves open; `whole` is the whole flow of the step.
+    pub fn stiction(&self, step: &Step, whole: &Flow) -> Vec<StictionRange> {
+        if self.known.columns.iter().all(|column| column.p_drives.is_some()) {
+            return vec![];
+        }
+        let c = self.c();
+        let efficiencies = step.efficiencies(c.train, &self.given);
+        let end = |j: usize, p: bool| rho(&c.elements[j], Some(p), &efficiencies);
+        let taken = |column: &SolvedColumn| rho(&c.elements[column.element], column.p_drives, &efficiencies);
+        let Some(forces) = self.forces(step, taken) else { return vec![] };
+        let is_stuck = |j: &usize| {
+            forces[*j] != 0.0 && self.sigma[*j] == Some(0) && (end(*j, true) != 1.0 || end(*j, false) != 1.0)
+        };
+        let stuck: Vec<usize> = (0..c.gears().len()).filter(is_stuck).collect();
+        let scale = self.problem.scale();
+        stiction(c, whole, &stuck, end, |choice| {
+            let given = |column: &SolvedColumn| choice.iter().find(|(j, _)| *j == column.element).map(|(_, rho)| *rho);
+            let forces = self.forces(step, |column| given(column).unwrap_or_else(|| taken(column)))?;
+            // What elements ask of members, and with the drags of nodes.
+            let (mut demand, mut asked) = (vec![0.0; c.node_of.len()], vec![0.0; c.nodes]);
+            for column in self.known.columns {
+                let e = &c.elements[column.element];
+                let rho = given(column).unwrap_or_else(|| taken(column));
+                let (a, b) = (e.a.to_f64(), e.b.to_f64() * rho);
+                for (member, part) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
+                    let torque = forces[column.element] * part;
+                    demand[member.0] += torque;
+                    c.node(member).into_iter().for_each(|n| asked[n] += torque);
+                }
+            }
+            for (node, torque) in self.dragged(step) {
+                node.into_iter().for_each(|n| asked[n] -= torque);
+            }
+            let mut external = vec![0.0; demand.len()];
+            for (member, prescribed) in &self.problem.terminals {
+                external[member.0] = match (prescribed, c.node(*member)) {
+                    (Some(torque), _) => torque.to_f64() * scale,
+                    (None, Some(n)) => asked[n] - self.problem.torques[n].to_f64() * scale,
+                    (None, None) => 0.0,
+                };
+            }
+            let (_, reactions) = ties(c, &demand, &external);
+            Some(reactions.into_iter().zip(&external).map(|(r, x)| r.map(|r| r + x)).collect())
+        })
     }
 
     /// Losses in agreement with the torques, from a train without any; `None` where other ends drive on the way.

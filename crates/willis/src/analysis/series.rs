@@ -208,7 +208,7 @@ impl<'t> PointSeries<'t> {
             return Ok(told);
         }
         let (told, pattern) = self.settled(operation)?;
-        if let Some(pattern) = pattern.filter(Pattern::moves)
+        if let Some(pattern) = pattern
             && let Some(situation) = self.situation(operation)
             && situation.patterns.len() < MOST_PATTERNS
             && !situation.patterns.iter().any(|known| known.is_like(&pattern))
@@ -273,10 +273,13 @@ impl<'t> PointSeries<'t> {
         let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
         let mut agreed = patterns.iter().filter(|p| p.suits(&sigma, &problem)).filter_map(|pattern| {
             let rounds = pattern.rounds(c, &motion, operation, &problem)?;
-            Known { train, pattern, rounds, motion: &motion }.agreed(physics, operation.temperature, idle)
+            let point = Known { train, pattern, rounds, motion: &motion };
+            let agreed = point.agreed(physics, operation.temperature, idle)?;
+            Some((point.rounds, agreed))
         });
-        let agreed = agreed.next()?;
+        let (rounds, agreed) = agreed.next()?;
         let flow = agreed.whole(c, &externals(c, &motion, &problem, &agreed)?);
+        let open = rounds.stiction(&agreed.step, &flow);
         let takes_all = !flow.roles.contains(&-1);
         let numbers = [flow.loss, flow.input_power, flow.output_power];
         let mut all = numbers.into_iter().chain(flow.torques.iter().flatten().copied());
@@ -288,7 +291,8 @@ impl<'t> PointSeries<'t> {
         let doubts = doubts(train, flow.input_power, &strains);
         let outside = OutsideLaw::of(&strains.extrapolations);
         let why = takes_all.then_some(Why::LossesTakeAll);
-        let findings = (why.iter().cloned().map(Finding::Why))
+        let findings = (Some(open).filter(|open| !open.is_empty()).into_iter().map(Finding::Stiction))
+            .chain(why.iter().cloned().map(Finding::Why))
             .chain(outside.iter().cloned().map(Finding::Outside))
             .chain(doubts.into_iter().map(Finding::Doubt));
         let notes = words::found(train, operation, &findings.collect::<Vec<_>>());

@@ -19,7 +19,10 @@ use super::{
 pub(super) struct Frame<'a> {
     pub c: &'a Configuration<'a>,
     pub motion: &'a Motion,
+    pub sigma: &'a [Option<i8>],
     pub problem: &'a Loads,
+    /// The loads without drags.
+    pub undragged: &'a Loads,
     pub equilibrium: &'a Equilibrium,
     pub operation: &'a Operation,
     pub drags: &'a [Drag],

@@ -3,7 +3,7 @@
 use std::fs;
 use std::sync::Arc;
 
-use willis::analysis::{Analysis, Selection, analyze};
+use willis::analysis::{Analysis, Selection, SolutionReport, analyze};
 use willis::model::{Model, Target};
 use willis::study::{
     Axis, ColumnValues, Hold, PointAnswer, PointAnswers, PointSetup, PointVerdict, Rows, Sweep, SweepRequest,
@@ -577,6 +577,38 @@ fn points_of_a_series_are_those_asked_alone() {
     }
     // Both ways were gone often enough to mean something.
     assert!(quick > 2000 && odd > 300, "{quick} {odd}");
+}
+
+/// What friction at rest leaves open is the same whether the forces are exact, as with given efficiencies alone, or found in
+/// floating point, as with drags that are as good as none.
+#[test]
+fn what_friction_leaves_open_is_the_same_beside_a_vanishing_drag() {
+    let mut compared = 0;
+    for (file, text) in examples() {
+        let given = subject(&text);
+        if given.train().is_physical() || text.contains("[[drag]]") {
+            continue;
+        }
+        let terminals = given.train().terminals().iter().map(|m| given.train().member_name(*m));
+        let drags = terminals.map(|m| {
+            format!("\n[[drag]]\nname = \"drag of {m}\"\nmembers = [\"{m}\", \"frame\"]\ncoulomb = \"1e-9 N m\"\n")
+        });
+        let with = subject(&(text.clone() + &drags.collect::<String>()));
+        for operation in given.train().operations() {
+            let [exact, floating] = [&given, &with].map(|m| PointAnswer::of(m.train(), operation));
+            let (Some(exact), Some(floating)) = (exact.solution, floating.solution) else { continue };
+            let open = |s: &SolutionReport| s.stiction.iter().map(|r| r.what.clone()).collect::<Vec<_>>();
+            assert_eq!(open(&exact), open(&floating), "{file} {}", operation.name);
+            for (a, b) in exact.stiction.iter().zip(&floating.stiction) {
+                for (a, b) in [(a.low, b.low), (a.high, b.high)] {
+                    let near = a.zip(b).map_or(a == b, |(a, b)| (a - b).abs() <= 1e-6 * a.abs().max(1e-3));
+                    assert!(near, "{file} {}: {a:?} {b:?}", operation.name);
+                }
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 5, "{compared}");
 }
 
 /// A column has its values whatever other columns are asked for: with none beyond the numbers of a point, or with all.
