@@ -13,7 +13,7 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPropertiesPtr};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::{Type, TypePtr};
+use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use willis::study::{ColumnValues, Rows, SweepColumn};
 
 use super::piece::Piece;
@@ -43,18 +43,23 @@ fn schema(columns: &[SweepColumn]) -> Result<TypePtr, ParquetError> {
     Ok(Arc::new(Type::group_type_builder("sweep").with_fields(fields).build()?))
 }
 
-fn properties() -> WriterPropertiesPtr {
-    let properties = WriterProperties::builder()
+fn properties(columns: &[SweepColumn]) -> WriterPropertiesPtr {
+    let mut properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::default()))
         .set_statistics_enabled(EnabledStatistics::Chunk)
         // Pieces are joined column by column; indices of pages would be lost.
         .set_offset_index_disabled(true)
         .set_created_by(concat!("willis ", env!("CARGO_PKG_VERSION")).to_owned());
+    // Texts have a dictionary, which says more than the first and the last of them, and those are looked for row by row.
+    for c in columns.iter().filter(|c| c.is_text) {
+        properties =
+            properties.set_column_statistics_enabled(ColumnPath::new(vec![c.name.clone()]), EnabledStatistics::None);
+    }
     Arc::new(properties.build())
 }
 
 fn encoded(columns: &[SweepColumn], rows: &Rows) -> Result<Vec<u8>, ParquetError> {
-    let mut writer = SerializedFileWriter::new(Vec::new(), schema(columns)?, properties())?;
+    let mut writer = SerializedFileWriter::new(Vec::new(), schema(columns)?, properties(columns))?;
     let mut group = writer.next_row_group()?;
     for cells in &rows.columns {
         let mut out = group.next_column()?.expect("as many as in the schema");
@@ -97,7 +102,8 @@ fn encoded(columns: &[SweepColumn], rows: &Rows) -> Result<Vec<u8>, ParquetError
 }
 
 fn joined(columns: &[SweepColumn], told: &str, pieces: &[Piece], out: File) -> Result<(), ParquetError> {
-    let mut writer = SerializedFileWriter::new(BufWriter::with_capacity(1 << 20, out), schema(columns)?, properties())?;
+    let mut writer =
+        SerializedFileWriter::new(BufWriter::with_capacity(1 << 20, out), schema(columns)?, properties(columns))?;
     for piece in pieces {
         let file = input::regular(&piece.path)?;
         let reader = SerializedFileReader::new(file.try_clone()?)?;
