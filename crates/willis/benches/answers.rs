@@ -89,6 +89,14 @@ fn sure(c: &mut Criterion) {
     group.finish();
 }
 
+/// Bytes a second that a copy of a long array reads and writes.
+fn memory(_: &mut Criterion) {
+    const BYTES: usize = 1 << 27;
+    let (from, mut to) = (vec![1u8; BYTES], vec![0u8; BYTES]);
+    let (seconds, spread) = shortest(9, || black_box(&mut to).copy_from_slice(black_box(&from)));
+    record("memory", &[("bytes_per_s", 2.0 * BYTES as f64 / seconds), ("spread", spread)]);
+}
+
 /// The example whose regimes take longest.
 fn all_regimes(_: &mut Criterion) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
@@ -169,5 +177,5 @@ fn growth(_: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, physical, sure, all_regimes, batches, growth);
+criterion_group!(benches, memory, physical, sure, all_regimes, batches, growth);
 criterion_main!(benches);

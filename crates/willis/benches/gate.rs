@@ -73,7 +73,7 @@ const GRID: usize = 4 * 2 * 500;
 const STUDY: usize = 20 * 10 * 500;
 
 /// Samples of what is uncertain.
-const SAMPLES: usize = 512;
+const SAMPLES: usize = 128;
 
 /// Values on each axis of a grid of points with computed losses.
 const SIDE: usize = 32;
@@ -289,6 +289,34 @@ fn chain_moved(sets: usize, n: usize) {
     adaptive(&Train::from_toml(&trains::chain(sets)).unwrap(), "run up", n);
 }
 
+/// What is asked of so many sets, so many times.
+type Chain = fn(usize, usize);
+
+/// What is asked of sets in series.
+const CHAINS: [(&str, Chain); 3] = [("analyze", chain_analyzed), ("regimes", chain_regimes), ("simulate", chain_moved)];
+
+/// `chain-analyze-32` and the like.
+fn chain(name: &str, times: usize) {
+    let (what, sets) = name.strip_prefix("chain-").and_then(|rest| rest.split_once('-')).unwrap();
+    let (_, run) = CHAINS.iter().find(|c| c.0 == what).unwrap();
+    run(sets.parse().unwrap(), times);
+}
+
+/// Instructions over the number of sets in series, as CSV: `cargo bench -p willis --bench gate -- growth` records them in
+/// `benches/growth.csv`, which the figure in the book shows.
+fn growth() -> String {
+    let mut text = format!("sets,{}\n", CHAINS.map(|c| c.0).join(","));
+    for sets in [1, 2, 4, 8, 16, 32, 64] {
+        let each = CHAINS.map(|(what, _)| {
+            let of = |times| count(&format!("chain-{what}-{sets}"), times).expect("valgrind counts");
+            format!("{:.0}", of(2) - of(1))
+        });
+        text += &format!("{sets},{}\n", each.join(","));
+        println!("{sets}: {}", each.join(" "));
+    }
+    text
+}
+
 /// Whole runs in steps of 1 ms, modes known; with the energies counted or without.
 fn steps(train: &Train, scenario: &str, steps: u64, audited: bool, n: usize) {
     let mut run = FixedStep::new(train, scenario, 1e-3).unwrap();
@@ -349,14 +377,20 @@ fn main() {
     let arguments: Vec<String> = std::env::args().collect();
     if let Some(at) = arguments.iter().position(|a| a == "run") {
         let (name, times) = (&arguments[at + 1], arguments[at + 2].parse().unwrap());
-        let task = TASKS.iter().find(|t| t.0 == name).unwrap();
-        return (task.2)(times);
+        return match TASKS.iter().find(|t| t.0 == name) {
+            Some(task) => (task.2)(times),
+            None => chain(name, times),
+        };
     }
     if !Command::new("valgrind").arg("--version").output().is_ok_and(|o| o.status.success()) {
         println!("skipped: valgrind is not installed");
         return;
     }
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/instructions.toml");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches");
+    if arguments.iter().any(|a| a == "growth") {
+        return std::fs::write(folder.join("growth.csv"), growth()).unwrap();
+    }
+    let file = folder.join("instructions.toml");
     let recorded: toml::Table = std::fs::read_to_string(&file).unwrap_or_default().parse().unwrap();
     let write = std::env::var_os("WILLIS_WRITE").is_some();
     let mut text = String::from(

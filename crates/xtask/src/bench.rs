@@ -28,64 +28,83 @@ enum Goal {
 }
 use Goal::{Least, Most, Times};
 
-/// Task, peer (a program, or another task of ours), what is asked, and what the machine allows at most, in words.
-type Asked = (&'static str, &'static str, Goal, &'static str);
+/// What the machine allows at most.
+#[derive(Clone, Copy)]
+enum Limit {
+    Words(&'static str),
+    /// So many bytes of a point go through the memory.
+    Bytes(f64),
+}
+use Limit::{Bytes, Words};
+
+impl Limit {
+    /// In words; `bandwidth` of the memory in bytes a second.
+    fn told(self, bandwidth: f64) -> String {
+        match self {
+            Words(words) => words.to_owned(),
+            Bytes(bytes) => format!("{:.1e}: {bytes} bytes a point, {:.0} GB/s", bandwidth / bytes, bandwidth / 1e9),
+        }
+    }
+}
+
+/// Task, peer (a program, or another task of ours), what is asked, and what the machine allows.
+type Asked = (&'static str, &'static str, Goal, Limit);
 
 /// Points, steps, or seconds of a scenario, in a second. Limits: the same arithmetic written in C for this case alone, or
 /// the bandwidth of the memory.
 const RATES: &[Asked] = &[
-    ("map-all", "numpy-whole-array", Times(10.0), "17: 56 bytes a point"),
-    ("map-all", "numpy-blocked", Goal::None, ""),
-    ("map-all", "numba-fused", Times(0.9), "1.1: 56 bytes a point"),
-    ("map-efficiency", "numpy-whole-array", Times(40.0), "97 in cache; 32 bytes a point"),
-    ("map-efficiency", "numba-fused", Goal::None, ""),
-    ("map-reduced", "numpy-whole-array", Times(40.0), "120 in cache; 24 bytes a point"),
-    ("map-reduced", "numba-fused", Times(1.0), "1.1: 24 bytes a point"),
-    ("automatic-gear-1", "numpy-batched-solve", Times(200.0), "1000"),
-    ("automatic-gear-1", "numpy-precomputed", Times(15.0), "80"),
-    ("automatic-gear-1", "numba-fused", Goal::None, ""),
-    ("automatic-gear-1", "", Least(500e6), "6.9e8"),
-    ("automatic-gear-3", "numpy-batched-solve", Times(200.0), "1000"),
-    ("automatic-gear-3", "numpy-precomputed", Times(15.0), "80"),
-    ("automatic-gear-3", "numba-fused", Goal::None, ""),
-    ("automatic-gear-3", "", Least(500e6), "6.9e8"),
-    ("automatic-gear-5", "numpy-batched-solve", Times(200.0), "1000"),
-    ("automatic-gear-5", "numpy-precomputed", Times(15.0), "80"),
-    ("automatic-gear-5", "numba-fused", Goal::None, ""),
-    ("automatic-gear-5", "", Least(500e6), "6.9e8"),
-    ("automatic-load-gear-1", "numpy-batched-solve", Times(30.0), "85"),
-    ("automatic-load-gear-3", "numpy-batched-solve", Times(30.0), "85"),
-    ("automatic-load-gear-5", "numpy-batched-solve", Times(30.0), "85"),
-    ("automatic-one-point", "", Goal::None, ""),
-    ("automatic-load-one-point", "", Goal::None, ""),
-    ("physical-stage", "", Least(1e5), ""),
-    ("physical-eight-speed", "", Least(5e4), ""),
-    ("set-adaptive", "scipy-lsoda", Times(30.0), "107"),
-    ("set-adaptive", "scipy-lsoda-numba", Goal::None, "75"),
-    ("set-adaptive-again", "", Least(5e4), "9.3e4"),
-    ("automatic-adaptive-again", "", Least(5e4), ""),
-    ("set-fixed-1e-3", "", Least(1.3e7), "2.6e7"),
-    ("set-fixed-1e-4", "", Least(1.3e7), "2.6e7"),
-    ("automatic-fixed-1e-3", "", Least(3e7), "3.5e7"),
-    ("automatic-fixed-1e-4", "", Least(3e7), "3.5e7"),
-    ("set-batch", "set-fixed-1e-3", Times(5.0), "13"),
-    ("automatic-batch", "automatic-fixed-1e-3", Goal::None, ""),
+    ("map-all", "numpy-whole-array", Times(10.0), Bytes(56.0)),
+    ("map-all", "numpy-blocked", Goal::None, Words("")),
+    ("map-all", "numba-fused", Times(0.9), Bytes(56.0)),
+    ("map-efficiency", "numpy-whole-array", Times(40.0), Bytes(32.0)),
+    ("map-efficiency", "numba-fused", Goal::None, Words("")),
+    ("map-reduced", "numpy-whole-array", Times(40.0), Bytes(24.0)),
+    ("map-reduced", "numba-fused", Times(1.0), Bytes(24.0)),
+    ("automatic-gear-1", "numpy-batched-solve", Times(200.0), Words("1000")),
+    ("automatic-gear-1", "numpy-precomputed", Times(15.0), Words("80")),
+    ("automatic-gear-1", "numba-fused", Goal::None, Words("")),
+    ("automatic-gear-1", "", Least(500e6), Words("6.9e8")),
+    ("automatic-gear-3", "numpy-batched-solve", Times(200.0), Words("1000")),
+    ("automatic-gear-3", "numpy-precomputed", Times(15.0), Words("80")),
+    ("automatic-gear-3", "numba-fused", Goal::None, Words("")),
+    ("automatic-gear-3", "", Least(500e6), Words("6.9e8")),
+    ("automatic-gear-5", "numpy-batched-solve", Times(200.0), Words("1000")),
+    ("automatic-gear-5", "numpy-precomputed", Times(15.0), Words("80")),
+    ("automatic-gear-5", "numba-fused", Goal::None, Words("")),
+    ("automatic-gear-5", "", Least(500e6), Words("6.9e8")),
+    ("automatic-load-gear-1", "numpy-batched-solve", Times(30.0), Words("85")),
+    ("automatic-load-gear-3", "numpy-batched-solve", Times(30.0), Words("85")),
+    ("automatic-load-gear-5", "numpy-batched-solve", Times(30.0), Words("85")),
+    ("automatic-one-point", "", Goal::None, Words("")),
+    ("automatic-load-one-point", "", Goal::None, Words("")),
+    ("physical-stage", "", Least(1e5), Words("")),
+    ("physical-eight-speed", "", Least(5e4), Words("")),
+    ("set-adaptive", "scipy-lsoda", Times(30.0), Words("107")),
+    ("set-adaptive", "scipy-lsoda-numba", Goal::None, Words("75")),
+    ("set-adaptive-again", "", Least(5e4), Words("9.3e4")),
+    ("automatic-adaptive-again", "", Least(5e4), Words("")),
+    ("set-fixed-1e-3", "", Least(1.3e7), Words("2.6e7")),
+    ("set-fixed-1e-4", "", Least(1.3e7), Words("2.6e7")),
+    ("automatic-fixed-1e-3", "", Least(3e7), Words("3.5e7")),
+    ("automatic-fixed-1e-4", "", Least(3e7), Words("3.5e7")),
+    ("set-batch", "set-fixed-1e-3", Times(5.0), Words("13")),
+    ("automatic-batch", "automatic-fixed-1e-3", Goal::None, Words("")),
 ];
 
 /// Seconds of one answer. `set-thousand` and `automatic-thousand`, which have no seconds, stand in [`BATCHES`].
 const ANSWERS: &[Asked] = &[
-    ("eight-speed-text-to-answer", "", Most(0.35e-3), ""),
-    ("nine-automatics-two-loss-levels", "", Most(50e-3), ""),
-    ("eight-speed-compile-one-gear", "", Most(1e-3), ""),
-    ("regimes-longest", "", Most(20e-3), ""),
-    ("stage-one-point", "", Goal::None, ""),
-    ("stage-sensitivity", "stage-one-point", Times(0.2), ""),
-    ("stage-uncertainty", "", Most(0.2), ""),
-    ("automatic-longest-step", "", Most(1e-6), "0.03e-6"),
+    ("eight-speed-text-to-answer", "", Most(0.35e-3), Words("")),
+    ("nine-automatics-two-loss-levels", "", Most(50e-3), Words("")),
+    ("eight-speed-compile-one-gear", "", Most(1e-3), Words("")),
+    ("regimes-longest", "", Most(20e-3), Words("")),
+    ("stage-one-point", "", Goal::None, Words("")),
+    ("stage-sensitivity", "stage-one-point", Times(0.2), Words("")),
+    ("stage-uncertainty", "", Most(0.2), Words("")),
+    ("automatic-longest-step", "", Most(1e-6), Words("0.03e-6")),
     // Sixteen times as many sets: sixteen times as long, were it linear.
-    ("chain-analyze-64", "chain-analyze-4", Goal::None, "1/16"),
-    ("chain-regimes-64", "chain-regimes-4", Goal::None, "1/16"),
-    ("chain-simulate-64", "chain-simulate-4", Goal::None, "1/16"),
+    ("chain-analyze-64", "chain-analyze-4", Goal::None, Words("1/16")),
+    ("chain-regimes-64", "chain-regimes-4", Goal::None, Words("1/16")),
+    ("chain-simulate-64", "chain-simulate-4", Goal::None, Words("1/16")),
 ];
 
 /// How many times as fast a thousand runs are side by side as one after the other.
@@ -160,7 +179,7 @@ impl Table {
     ) {
         let ratio = theirs.map(|theirs| if rate { ours.value / theirs } else { theirs / ours.value });
         let (asked, reached) = match goal {
-            Times(x) => (format!("{x} x"), ratio.is_some_and(|r| r >= x)),
+            Times(x) => (format!("{x:.3} x").replace(".000 x", " x"), ratio.is_some_and(|r| r >= x)),
             Least(x) => (format!("{x:.1e}"), ours.value >= x),
             Most(x) => (format!("{x:.1e} s"), ours.value <= x),
             Goal::None => (String::new(), true),
@@ -205,7 +224,9 @@ fn run(root: &Path) -> Result<(), String> {
     let criterion = ["--", "--noplot", "--quiet", "--warm-up-time", "0.5", "--measurement-time", "2"];
     let mut c = Command::new("cargo");
     c.current_dir(root).args(["bench", "-p", "willis", "--quiet"]).args(benches).args(criterion);
-    command(c.env("CRITERION_HOME", root.join("target/criterion")).stdout(std::process::Stdio::null()))?;
+    // Large pages for long arrays, as NumPy has them for its own.
+    c.env("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1").env("CRITERION_HOME", root.join("target/criterion"));
+    command(c.stdout(std::process::Stdio::null()))?;
     let mut peers = Vec::new();
     let scripts: [(&str, &[&str]); 4] = [
         ("map.py", &["--points", "10000000"]),
@@ -227,17 +248,18 @@ fn run(root: &Path) -> Result<(), String> {
     let own = lines(&fs::read_to_string(&checksums).map_err(|e| e.to_string())?)?;
     let results = Results { root: root.to_owned(), own, peers };
 
+    let bandwidth = results.recorded("memory", "bytes_per_s")?.value;
     let mut table = Table::default();
     let mut wrong = Vec::new();
     println!();
     table.head();
     for &(task, peer, goal, limit) in RATES {
         let theirs = results.theirs(task, peer, true, &mut wrong)?;
-        table.row((task, peer), (theirs, results.rate(task)?), true, goal, limit);
+        table.row((task, peer), (theirs, results.rate(task)?), true, goal, &limit.told(bandwidth));
     }
     for &(task, peer, goal, limit) in ANSWERS {
         let theirs = results.theirs(task, peer, false, &mut wrong)?;
-        table.row((task, peer), (theirs, results.seconds(task)?), false, goal, limit);
+        table.row((task, peer), (theirs, results.seconds(task)?), false, goal, &limit.told(bandwidth));
     }
     for &(task, goal) in BATCHES {
         let ours = results.recorded(task, "ratio")?;
@@ -411,7 +433,13 @@ fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Re
     }
     let table_file = out("map.parquet");
     let (written, _) = run(&[&on("2")[..], &["--force", "--out", &table_file]].concat(), 5)?;
-    table.row(("the same, into Parquet", "without a table"), (Some(two), written), false, Times(1.0 / 1.5), "");
+    table.row(
+        ("the same, into Parquet", "without a table"),
+        (Some(two), written),
+        false,
+        Times(1.0 / 1.5),
+        "texts and tables of values, by the library",
+    );
 
     let physical = |more: &[&'static str]| {
         let sweep = ["sweep", "examples/fva-planetary-stage.toml", "--over", "sun.speed=100..3000 rpm:100", "--over"];

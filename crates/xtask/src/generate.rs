@@ -6,6 +6,7 @@ use std::fs;
 use serde_json::Value;
 
 use crate::context::Context;
+use crate::growth;
 use crate::program::build_willis;
 use crate::reference::{PAGES, PARTS, write_reference};
 use crate::step::{Outcome, outcome, tested};
@@ -270,6 +271,7 @@ fn write_generated(context: &Context) -> Result<(), String> {
         fs::create_dir_all(path.parent().expect("a folder")).map_err(|e| format!("{file}: {e}"))?;
         context.output(context.willis().args(*arguments).arg(&path).arg("--force"))?;
     }
+    growth::write(&context.root)?;
     let is_copy = |file: &&&str| COPIES.iter().any(|folder| file.starts_with(folder));
     for copy in GENERATED.iter().filter(is_copy) {
         let from = context.root.join("examples").join(copy.rsplit('/').next().expect("a name"));
@@ -307,6 +309,7 @@ pub(crate) fn generate(context: &Context) -> Outcome {
 fn there(context: &Context) -> Result<BTreeMap<String, Vec<u8>>, String> {
     let mut names: Vec<String> =
         GENERATED.iter().chain(FIGURES.iter().map(|f| &f.0)).map(|n| (*n).to_owned()).collect();
+    names.push(growth::FIGURE.to_owned());
     names.extend(PAGES.iter().map(|p| p.0).chain(PARTS.iter().map(|p| p.0)).map(str::to_owned));
     names.sort();
     names.dedup();

@@ -13,6 +13,7 @@ mod exports;
 mod fmu;
 mod fuzz;
 mod generate;
+mod growth;
 mod licences;
 mod measure;
 mod package;

@@ -138,22 +138,19 @@ struct Stretch {
     gain: [f64; 2],
     /// All bits where the power enters, none elsewhere.
     enters: [u64; 3],
-    /// 1 where any power enters.
-    any: f64,
 }
 
 impl Stretch {
     fn new(row: &Row, signs: u64) -> Self {
         let driver = usize::from(signs & FIRST_DRIVES == 0);
         let enters = ENTERS.map(|bit| if signs & bit == 0 { 0 } else { u64::MAX });
-        let any = if enters == [0; 3] { 0.0 } else { 1.0 };
-        Self { speed: row.speed, drag: row.drag, gain: row.gain.map(|g| g[driver]), enters, any }
+        Self { speed: row.speed, drag: row.drag, gain: row.gain.map(|g| g[driver]), enters }
     }
 
     /// One point: the operations of [`Row::point`] without those whose result is known.
     #[inline(always)]
     fn point(&self, torque: f64) -> SinglePoint {
-        let Self { speed: [wl, wa, wb], drag: [dl, da, db], gain: [a, b], enters: [l, m, n], any } = *self;
+        let Self { speed: [wl, wa, wb], drag: [dl, da, db], gain: [a, b], enters: [l, m, n] } = *self;
         let reaches = torque - dl;
         let ta = a * reaches + da;
         let tb = b * reaches + db;
@@ -161,7 +158,7 @@ impl Stretch {
         let pos = |p: f64, enters: u64| f64::from_bits(p.to_bits() & enters);
         let power_in = pos(pl, l) + pos(pa, m) + pos(pb, n);
         let loss = pl + pa + pb;
-        let efficiency = if any > 0.0 && power_in >= LEAST_POWER { (power_in - loss) / power_in } else { 0.0 };
+        let efficiency = if power_in >= LEAST_POWER { (power_in - loss) / power_in } else { 0.0 };
         SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive: 0.0, loss, efficiency }
     }
 }

@@ -109,7 +109,7 @@ fn words(happenings: &[Happening]) -> String {
             HappeningKind::Start => return "start".to_owned(),
             HappeningKind::ComesToRest => ["", " comes to rest", " come to rest"],
             HappeningKind::BreaksAway => ["", " breaks away", " break away"],
-            HappeningKind::TurnsRound => ["", " turns round", " turn round"],
+            HappeningKind::TurnsRound => ["", " reverses", " reverse"],
             HappeningKind::RestsForAnInstant => ["", " at rest for an instant", " at rest for an instant"],
             HappeningKind::Engages => ["", " engages", " engage"],
             HappeningKind::Opens => ["", " opens", " open"],

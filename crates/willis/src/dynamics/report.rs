@@ -331,7 +331,7 @@ pub struct Event {
     /// When, s.
     pub time_s: f64,
     /// What happened, in words, some names left out where they are many: `start`; `B comes to rest`, `B and
-    /// P1.sun-planet break away`, `bearing turns round`, `C engages, B opens`, `side shafts: contact`, `drive reverses
+    /// P1.sun-planet break away`, `bearing reverses`, `C engages, B opens`, `side shafts: contact`, `drive reverses
     /// in P1.sun-planet`.
     pub cause: String,
     /// What `cause` says, as data.

@@ -694,7 +694,7 @@ pub(crate) fn changes(a: &RegimeReport, b: &RegimeReport) -> Vec<String> {
     }
     for ((name, before), (_, after)) in a.torque_signs.iter().zip(b.torque_signs.iter()) {
         if before != after {
-            all.push(format!("{name}: the torque turns round"));
+            all.push(format!("{name}: the torque reverses"));
         }
     }
     all

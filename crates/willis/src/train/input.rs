@@ -105,7 +105,7 @@ impl Slot {
         )
     }
 
-    /// Sets it, where it stands alone and the value is one that a train file may have; else nothing has changed.
+    /// Sets it, where it stands alone and the value is one that a train file may have; `None`, and nothing has changed, else.
     fn set(self, train: &mut Train, exact: &Rational, value: f64) -> Option<()> {
         use BearingNumber as B;
         let positive = value.is_finite() && value > 0.0;
@@ -138,7 +138,8 @@ impl Train {
             Measure::Number => {
                 let exact: Rational = text.parse().ok()?;
                 let value = exact.to_f64();
-                (exact, value)
+                // More digits than a number of the file keeps.
+                (Rational::from_f64(value)? == exact).then_some((exact, value))?
             }
             Measure::Quantity(dimension) => {
                 let quantity = units::parse(text, dimension).ok()?;

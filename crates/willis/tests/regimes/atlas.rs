@@ -1842,7 +1842,7 @@ fn compare_boundaries(case: &Case, seen: &mut Crossed) {
         let roles = a.roles.iter().zip(b.roles.iter()).filter(|(x, y)| x.1 != y.1).count();
         let turns = a.torque_signs.iter().zip(b.torque_signs.iter()).filter(|(x, y)| x.1 != y.1).count();
         let told = |what: &str| c.changes.iter().filter(|t| t.contains(what)).count();
-        assert_eq!((told("becomes"), told("turns round")), (roles, turns), "{c:?}");
+        assert_eq!((told("becomes"), told("reverses")), (roles, turns), "{c:?}");
     }
 }
 

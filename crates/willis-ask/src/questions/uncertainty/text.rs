@@ -203,7 +203,7 @@ fn dominance(u: &Uncertainty) -> String {
         let beside = if same { "; the loss in the same order" } else { "" };
         out += &format!("{}{beside}\n", bold(&format!("What dominates the {}", Shown::new(o).name())));
         let mut t = table();
-        set_header(&mut t, &["share of the variance", "alone %", "±", "in all %", "±", ""]);
+        set_header(&mut t, &["share of the variance", "first order %", "±", "total %", "±", ""]);
         for i in &o.influences {
             // Adding zero turns -0 into 0.
             let percent = |x: f64| format!("{:.1}", (1000.0 * x).round() / 10.0 + 0.0);

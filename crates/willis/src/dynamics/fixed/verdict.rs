@@ -31,7 +31,7 @@ impl FixedStep {
             "the speeds grow without bound".to_owned()
         } else if self.turns >= MOST_TURNS {
             format!(
-                "speeds that turn round at each step grow without bound: a gain or a drag is too high for steps of {} s",
+                "speeds that reverse at each step grow without bound: a gain or a drag is too high for steps of {} s",
                 self.h
             )
         } else {
