@@ -927,16 +927,12 @@ pub(crate) fn law_band(train: &Train, operation: &Operation) -> Option<LawBand> 
 /// What the model leaves out, then what stands in for missing data.
 pub fn assumptions(train: &Train) -> Vec<String> {
     let mut all = vec!["steady state: no inertia".to_owned()];
-    all.extend(assumptions_at(train, true));
+    all.extend(assumptions_in_motion(train, false));
     all
 }
 
-/// The same of a model in motion, in which inertias and what lies behind elastic shafts count.
-pub(crate) fn assumptions_in_motion(train: &Train) -> Vec<String> {
-    assumptions_at(train, false)
-}
-
-fn assumptions_at(train: &Train, is_steady: bool) -> Vec<String> {
+/// The same of a model in motion, in which inertias count; `elastic`: what lies behind elastic shafts too.
+pub(crate) fn assumptions_in_motion(train: &Train, elastic: bool) -> Vec<String> {
     let mut all = vec![];
     if train.meshes.iter().any(|m| !m.computed && m.efficiency != Efficiency::lossless()) {
         all.push("given mesh efficiencies are constants: independent of load, speed and temperature".into());
@@ -949,7 +945,7 @@ fn assumptions_at(train: &Train, is_steady: bool) -> Vec<String> {
     }
     if !train.drags.is_empty() {
         all.push("given drags act wherever their members turn against each other; at rest they may hold a load".into());
-        let beyond = train.drags.iter().filter(|d| is_steady && d.members.iter().any(|m| !train.is_within(*m)));
+        let beyond = train.drags.iter().filter(|d| !elastic && d.members.iter().any(|m| !train.is_within(*m)));
         all.extend(beyond.map(|d| format!("{}: it acts behind an elastic shaft and does not count here", d.name)));
     }
     for v in &train.variators {

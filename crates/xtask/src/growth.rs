@@ -97,18 +97,23 @@ fn draw(curves: &[Curve]) -> String {
     if let Some([first, count]) = curves.first().and_then(|c| c.points.first()) {
         let end = [x(most_sets), y(count * most_sets / first)];
         svg += &line([x(*first), y(*count)], end, "stroke=\"#8f8f8f\" stroke-dasharray=\"5 4\" stroke-width=\"1.2\"");
-        svg += &text(end[0] - 6.0, end[1] + 16.0, "end", faint, 12.0, "in proportion");
+        svg += &text(end[0] + 8.0, end[1] + 4.0, "start", faint, 12.0, "in proportion");
     }
-    for (curve, ink) in curves.iter().zip(INKS.iter().cycle()) {
+    // Names keep clear of each other, the highest first.
+    let mut names: Vec<f64> = curves.iter().map(|c| c.points.last().map_or(BOTTOM, |p| y(p[1]))).collect();
+    let mut order: Vec<usize> = (0..names.len()).collect();
+    order.sort_by(|a, b| names[*a].total_cmp(&names[*b]));
+    for pair in order.windows(2) {
+        names[pair[1]] = names[pair[1]].max(names[pair[0]] + 15.0);
+    }
+    for ((curve, ink), name) in curves.iter().zip(INKS.iter().cycle()).zip(names) {
         let points: Vec<String> = curve.points.iter().map(|p| format!("{:.1},{:.1}", x(p[0]), y(p[1]))).collect();
         svg +=
             &format!("<polyline fill=\"none\" points=\"{}\" stroke=\"{ink}\" stroke-width=\"2\"/>\n", points.join(" "));
         for p in &curve.points {
             svg += &format!("<circle cx=\"{:.1}\" cy=\"{:.1}\" fill=\"{ink}\" r=\"3\"/>\n", x(p[0]), y(p[1]));
         }
-        if let Some(last) = curve.points.last() {
-            svg += &text(x(last[0]) + 8.0, y(last[1]) + 4.0, "start", ink, 13.0, &curve.name);
-        }
+        svg += &text(RIGHT + 8.0, name + 4.0, "start", ink, 13.0, &curve.name);
     }
     svg + "</svg>\n"
 }

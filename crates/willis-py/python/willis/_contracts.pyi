@@ -4227,7 +4227,7 @@ class SimulateEvent(Record):
     @property
     def cause(self) -> str:
         """What happened, in words, some names left out where they are many: ``start``; ``B comes to rest``, ``B and
-        P1.sun-planet break away``, ``bearing turns round``, ``C engages, B opens``, ``side shafts: contact``,
+        P1.sun-planet break away``, ``bearing reverses``, ``C engages, B opens``, ``side shafts: contact``,
         ``drive reverses in P1.sun-planet``."""
     @property
     def happenings(self) -> list[SimulateHappening]:

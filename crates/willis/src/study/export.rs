@@ -155,8 +155,19 @@ pub struct Kind {
     write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
     /// What begins and ends a comment; empty where the format has none.
     comment: [&'static str; 2],
-    /// Whether it is a model in motion, with inertias.
-    moves: bool,
+    /// What of a motion it has.
+    motion: Moved,
+}
+
+/// What of a motion a format has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Moved {
+    /// Nothing: it is a table of steady points.
+    Nothing,
+    /// Inertias, as far as they are joined without an elastic shaft.
+    Rigid,
+    /// Inertias, and elastic shafts with what lies behind them.
+    Elastic,
 }
 
 /// Every format there is.
@@ -166,63 +177,63 @@ pub const KINDS: &[Kind] = &[
         about: "plain map: torque, loss, efficiency and verdict of every point",
         write: csv::write,
         comment: ["", ""],
-        moves: false,
+        motion: Moved::Nothing,
     },
     Kind {
         id: "vecto",
         about: "VECTO transmission loss maps (.vtlm), one a gear",
         write: vecto::write,
         comment: ["# ", ""],
-        moves: false,
+        motion: Moved::Nothing,
     },
     Kind {
         id: "modelica-loss-table",
         about: "lossTable and ratio of Modelica's LossyGear, whole gear, each state",
         write: loss_table::write,
         comment: ["  // ", ""],
-        moves: false,
+        motion: Moved::Nothing,
     },
     Kind {
         id: "modelica",
         about: "the train as a model of Modelica's Rotational library (.mo)",
         write: modelica::write,
         comment: ["  // ", ""],
-        moves: true,
+        motion: Moved::Elastic,
     },
     Kind {
         id: "modelica-equations",
         about: "a gear in motion as equations of Modelica, without any library (.mo)",
         write: equations::write,
         comment: ["  // ", ""],
-        moves: true,
+        motion: Moved::Elastic,
     },
     Kind {
         id: "simscape",
         about: "efficiencies for Simscape Driveline gears (MATLAB script)",
         write: simscape::write,
         comment: ["% ", ""],
-        moves: false,
+        motion: Moved::Nothing,
     },
     Kind {
         id: "mujoco",
         about: "actuator with gear, armature and both efficiencies (MJCF)",
         write: mujoco::write,
         comment: ["<!-- ", " -->"],
-        moves: true,
+        motion: Moved::Rigid,
     },
     Kind {
         id: "drake",
         about: "joint actuator with gear ratio and rotor inertia (URDF)",
         write: drake::write,
         comment: ["<!-- ", " -->"],
-        moves: true,
+        motion: Moved::Rigid,
     },
     Kind {
         id: "openfast",
         about: "GBoxEff and GBRatio of ElastoDyn, side and sign told",
         write: openfast::write,
         comment: ["! ", ""],
-        moves: false,
+        motion: Moved::Nothing,
     },
 ];
 
@@ -276,7 +287,10 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
         Some(done.files.into_iter().map(|f| f.text).collect())
     };
     let done = complete(model, done, found.comment, &trial);
-    let assumptions = if found.moves { analysis::assumptions_in_motion(model.train()) } else { done.assumptions };
+    let assumptions = match found.motion {
+        Moved::Nothing => done.assumptions,
+        moved => analysis::assumptions_in_motion(model.train(), moved == Moved::Elastic),
+    };
     Ok(Export { assumptions, ..done })
 }
 
