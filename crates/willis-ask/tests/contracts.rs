@@ -324,8 +324,6 @@ fn what_was_stopped_says_so() {
     for entry in QUESTIONS.iter().filter(|q| ["simulate", "sweep", "cycle", "uncertainty"].contains(&q.name)) {
         for given in examples().chunks(1) {
             for value in requests(entry, &given[0]) {
-                let left_out = value["kind"].as_str().and_then(|kind| IN_MOTION.iter().find(|k| k.0 == kind));
-                let left_out = left_out.map_or(&[][..], |k| k.1);
                 let request = entry.request(value).unwrap();
                 match request.ask(given, &Stopped) {
                     Ok(answer) if entry.name == "simulate" => assert!(answer.is_partial()),
