@@ -20,6 +20,7 @@ mod rounds;
 mod series;
 mod shafts;
 mod solution;
+mod stiction;
 mod table;
 mod unit;
 mod variators;

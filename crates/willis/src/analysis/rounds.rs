@@ -12,7 +12,7 @@ use crate::train::{MemberId, Operation};
 
 use super::StictionRange;
 use super::loads::Loads;
-use super::margin::stiction;
+use super::stiction::stiction;
 
 /// What all rounds have in common.
 pub(super) struct Rounds<'a> {
