@@ -4227,8 +4227,8 @@ class SimulateEvent(Record):
     @property
     def cause(self) -> str:
         """What happened, in words, some names left out where they are many: ``start``; ``B comes to rest``, ``B and
-        P1.sun-planet break away``, ``bearing reverses``, ``C engages, B opens``, ``side shafts: contact``,
-        ``drive reverses in P1.sun-planet``."""
+        P1.sun-planet break away``, ``bearing reverses``, ``C engages, B opens``, ``side shafts: contact``, ``drive
+        reverses in P1.sun-planet``."""
     @property
     def happenings(self) -> list[SimulateHappening]:
         """What ``cause`` says, as data."""

@@ -281,7 +281,7 @@ class Questions:
         operation
             Only this operation.
         state
-            Only operations that run in this state.
+            Only operations that run in this state of the shift table.
         duration
             How long the warm-up takes: '2 h'. Default: five time constants.
         start
@@ -331,7 +331,7 @@ class Questions:
         operation
             Only this operation.
         state
-            Only operations that run in this state.
+            Only operations that run in this state of the shift table.
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
@@ -1242,14 +1242,14 @@ def design(
         them: all trains where there are no more, else those that no other one beats. With 0 mesh efficiencies rank.
         Default: 500.
     write
-        Give these rows as train files, by their numbers: 3, or 1,2,5 into a folder.
+        Write the train files of these rows: 3, or 1,2,5 into a folder.
     teeth
         Give the train with these teeth as a train file, without a search: 12/47/105/40/99 as in a row, of several sets
         20/12/44,22/13/48.
     shard
-        Search only a part of the space: 2/8 is the second of eight.
+        Only this part of the work: 3/16 is the third of sixteen.
     resume
-        Go on with what ``progress`` wrote; several times to put parts together.
+        Go on from what ``progress`` kept; several times to put parts together.
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
@@ -1366,7 +1366,7 @@ def schemes(
         Which come first: found (the order of their names), spread (the largest), torque, speed, step (the smallest),
         efficiency (the largest of the worst gear). Default: found.
     top
-        How many are shown. Default: 10, or as many as ``write`` names.
+        Show so many rows. Default: 10, or as many as ``write`` names.
     sample
         Examine one of so many layouts: a sample, in which nothing is complete.
     rediscover
@@ -1381,11 +1381,11 @@ def schemes(
     mobility
         Freedoms of a hybrid with no clutch closed. Default: 3.
     write
-        Write the train files of these rows: 3, or 1,2,5 with a folder as ``output``.
+        Write the train files of these rows: 3, or 1,2,5 into a folder.
     shard
-        Search only this part of the space: 3/16. ``progress`` keeps what it finds.
+        Only this part of the work: 3/16 is the third of sixteen.
     resume
-        Go on from what ``progress`` kept of the same wish; a list for several parts.
+        Go on from what ``progress`` kept; several times to put parts together.
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
