@@ -280,9 +280,9 @@ impl Model {
     /// it follows from them.
     fn with_numbers(&self, settings: &[(&Target, String)]) -> Option<Train> {
         let (train, alone) = self.alone.get_or_init(|| {
-            let train = self.train.clone().without_questions();
-            let inputs = train.inputs_alone();
-            let keys = inputs.filter_map(|(k, input)| Some((self.document.find(&input.path).ok()?, k))).collect();
+            let mut train = self.train.clone().without_questions();
+            let inputs = train.inputs_alone().into_iter();
+            let keys = inputs.filter_map(|k| Some((self.document.find(&train.inputs[k].path).ok()?, k))).collect();
             (train, keys)
         });
         let mut train = train.clone();

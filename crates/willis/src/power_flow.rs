@@ -285,12 +285,12 @@ fn variators(
 }
 
 /// Torque that the elements ask of each member, straight from their forces (chains as a whole).
-pub(crate) fn demand(c: &Configuration<'_>, s: &Solution) -> Vec<f64> {
+pub(crate) fn demand(c: &Configuration<'_>, forces: &[f64], rho: &[f64]) -> Vec<f64> {
     let mut demand = vec![0.0; c.node_of.len()];
     for (j, e) in c.elements.iter().enumerate() {
-        let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
+        let (a, b) = (e.a.to_f64(), e.b.to_f64() * rho[j]);
         for (member, x) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
-            demand[member.0] += s.forces[j] * x;
+            demand[member.0] += forces[j] * x;
         }
     }
     demand

@@ -33,8 +33,8 @@ pub(crate) fn write(root: &Path) -> Result<(), String> {
 
 fn curves(text: &str) -> Option<Vec<Curve>> {
     let mut lines = text.lines();
-    let names = lines.next()?.split(',').skip(1);
-    let mut all: Vec<Curve> = names.map(|name| Curve { name: name.to_owned(), points: vec![] }).collect();
+    let (_, names) = lines.next()?.split_once(',')?;
+    let mut all: Vec<Curve> = names.split(',').map(|name| Curve { name: name.to_owned(), points: vec![] }).collect();
     for line in lines {
         let numbers = line.split(',').map(|x| x.parse().ok()).collect::<Option<Vec<f64>>>()?;
         let (sets, counts) = numbers.split_first()?;

@@ -171,7 +171,7 @@ impl Frame<'_> {
 fn stuck_flow(frame: &Frame<'_>, s: &Solution) -> Vec<Option<f64>> {
     let c = frame.c;
     let scale = frame.problem.scale();
-    let mut demand: Vec<f64> = crate::power_flow::demand(c, s).iter().map(|x| x * scale).collect();
+    let mut demand: Vec<f64> = crate::power_flow::demand(c, &s.forces, &s.rho).iter().map(|x| x * scale).collect();
     let mut external = vec![0.0; demand.len()];
     for d in &frame.problem.driven {
         let machine = &c.train.variators[d.at[0]].machines()[d.at[1]];

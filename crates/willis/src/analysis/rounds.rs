@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 
 use crate::kinematics::{Configuration, Motion, Node};
 use crate::operating_point::{Approach, Convergence, Idle, Physics, Step};
-use crate::power_flow::{Drag, External, Flow, Known, rho, ties};
+use crate::power_flow::{Drag, External, Flow, Known, demand, rho, ties};
 use crate::statics::{Equilibrium, SolvedColumn};
 use crate::train::{MemberId, Operation};
 
@@ -114,19 +114,15 @@ impl<'a> Rounds<'a> {
         let stuck: Vec<usize> = (0..c.gears().len()).filter(is_stuck).collect();
         let scale = self.problem.scale();
         stiction(c, whole, &stuck, end, |choice| {
-            let given = |column: &SolvedColumn| choice.iter().find(|(j, _)| *j == column.element).map(|(_, rho)| *rho);
-            let forces = self.forces(step, |column| given(column).unwrap_or_else(|| taken(column)))?;
-            // What elements ask of members, and with the drags of nodes.
-            let (mut demand, mut asked) = (vec![0.0; c.node_of.len()], vec![0.0; c.nodes]);
-            for column in self.known.columns {
-                let e = &c.elements[column.element];
-                let rho = given(column).unwrap_or_else(|| taken(column));
-                let (a, b) = (e.a.to_f64(), e.b.to_f64() * rho);
-                for (member, part) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
-                    let torque = forces[column.element] * part;
-                    demand[member.0] += torque;
-                    c.node(member).into_iter().for_each(|n| asked[n] += torque);
-                }
+            let mut rho = vec![1.0; c.elements.len()];
+            self.known.columns.iter().for_each(|column| rho[column.element] = taken(column));
+            choice.iter().for_each(|(j, own)| rho[*j] = *own);
+            let forces = self.forces(step, |column| rho[column.element])?;
+            let demand = demand(c, &forces, &rho);
+            // What elements and drags ask of each node.
+            let mut asked = vec![0.0; c.nodes];
+            for (m, torque) in demand.iter().enumerate().filter(|(m, _)| !c.inner[*m]) {
+                c.node(MemberId(m)).into_iter().for_each(|n| asked[n] += torque);
             }
             for (node, torque) in self.dragged(step) {
                 node.into_iter().for_each(|n| asked[n] -= torque);

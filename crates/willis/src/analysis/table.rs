@@ -236,7 +236,7 @@ fn direction(c: &Configuration<'_>, transfer: &Transfer, [from, to]: [MemberId; 
     let w_in = w_from.to_f64();
     for s in &answer.solutions {
         let ends = [(from, torque(c, s, node_from)), (to, load)];
-        if let Some(clutch) = overrunning(c, &demand(c, s), ends, forward) {
+        if let Some(clutch) = overrunning(c, &demand(c, &s.forces, &s.rho), ends, forward) {
             return Direction::without(Verdict::Undetermined, Why::Overruns { clutch });
         }
     }

@@ -91,44 +91,37 @@ pub(crate) enum Slot {
     Heat(HeatNumber),
 }
 
-impl Slot {
-    /// Whether no other number of a train follows from it, so that it can be set alone.
-    fn stands_alone(self) -> bool {
-        use BearingNumber as B;
-        matches!(
-            self,
-            Self::Efficiency(..)
-                | Self::Roughness(..)
-                | Self::LossFactor(_)
-                | Self::Bearing(_, B::RadialLoad | B::AxialLoad)
-                | Self::Heat(HeatNumber::Factor)
-        )
-    }
+/// A number of a train from which nothing else of it follows, no other number and no assumption (which a factor on a loss has),
+/// so that it can be set alone.
+enum Alone<'t> {
+    /// An efficiency.
+    Exact(&'t mut Rational),
+    /// In SI units, above zero.
+    Float(&'t mut f64),
+}
 
-    /// Sets it, where it stands alone and the value is one that a train file may have; `None`, and nothing has changed, else.
-    fn set(self, train: &mut Train, exact: &Rational, value: f64) -> Option<()> {
+impl Slot {
+    /// Where it stands, if it stands alone.
+    fn alone(self, train: &mut Train) -> Option<Alone<'_>> {
         use BearingNumber as B;
-        let positive = value.is_finite() && value > 0.0;
-        match self {
-            Self::Efficiency(mesh, forward) if exact.sign() > 0 && *exact <= Rational::ONE => {
-                let own = &mut train.meshes[mesh].efficiency;
-                *if forward { &mut own.forward } else { &mut own.backward } = exact.clone();
-            }
-            Self::Roughness(mesh, k) if positive => train.meshes[mesh].teeth.as_mut()?.roughness[k] = value,
-            Self::LossFactor(part) if positive => train.loss_factors.factors[part as usize] = value,
-            Self::Bearing(k, B::RadialLoad) if positive => train.bearings[k].radial_load = value,
-            Self::Bearing(k, B::AxialLoad) if positive => train.bearings[k].axial_load = value,
-            Self::Heat(HeatNumber::Factor) if positive => train.heat.as_mut()?.factor = value,
+        Some(match self {
+            Self::Efficiency(mesh, true) => Alone::Exact(&mut train.meshes[mesh].efficiency.forward),
+            Self::Efficiency(mesh, false) => Alone::Exact(&mut train.meshes[mesh].efficiency.backward),
+            Self::Roughness(mesh, k) => Alone::Float(&mut train.meshes[mesh].teeth.as_mut()?.roughness[k]),
+            Self::Bearing(k, B::RadialLoad) => Alone::Float(&mut train.bearings[k].radial_load),
+            Self::Bearing(k, B::AxialLoad) => Alone::Float(&mut train.bearings[k].axial_load),
+            Self::Heat(HeatNumber::Factor) => Alone::Float(&mut train.heat.as_mut()?.factor),
             _ => return None,
-        }
-        Some(())
+        })
     }
 }
 
 impl Train {
     /// Which inputs can be [set](Self::set_input) by their numbers alone.
-    pub(crate) fn inputs_alone(&self) -> impl Iterator<Item = (usize, &Input)> {
-        self.inputs.iter().enumerate().filter(|(_, i)| i.slots.iter().all(|s| s.stands_alone()))
+    pub(crate) fn inputs_alone(&mut self) -> Vec<usize> {
+        let slots: Vec<Vec<Slot>> = self.inputs.iter().map(|i| i.slots.clone()).collect();
+        let alone = |k: &usize| slots[*k].iter().all(|s| s.alone(self).is_some());
+        (0..slots.len()).filter(alone).collect()
     }
 
     /// Gives one input the value that a train file writes so; `None` where only a reading of the whole file tells what the
@@ -141,15 +134,17 @@ impl Train {
                 // More digits than a number of the file keeps.
                 (Rational::from_f64(value)? == exact).then_some((exact, value))?
             }
-            Measure::Quantity(dimension) => {
-                let quantity = units::parse(text, dimension).ok()?;
-                (Rational::ZERO, quantity.si())
-            }
+            Measure::Quantity(dimension) => (Rational::ZERO, units::parse(text, dimension).ok()?.si()),
             _ => return None,
         };
         self.inputs[k].value = value;
         for slot in self.inputs[k].slots.clone() {
-            slot.set(self, &exact, value)?;
+            match slot.alone(self)? {
+                Alone::Exact(own) if exact.sign() > 0 && exact <= Rational::ONE => *own = exact.clone(),
+                Alone::Float(own) if value.is_finite() && value > 0.0 => *own = value,
+                // A value that the file may not have, or one that means something else there.
+                _ => return None,
+            }
         }
         Some(())
     }
