@@ -180,6 +180,41 @@ fn every_chapter_opens_with_its_question() {
     }
 }
 
+/// Chapters of the first three parts: all but the reference.
+fn chapters() -> Vec<String> {
+    let summary = read(&root().join("book/src/SUMMARY.md"));
+    let told = summary.split("\n# Reference").next().unwrap();
+    let all: Vec<String> = links(told).into_iter().map(|l| format!("book/src/{}", l.2)).collect();
+    assert!(all.len() > 25, "only {} chapters found", all.len());
+    all
+}
+
+/// What is wrong with the order of a chapter: a command comes before headings, pictures and other code.
+fn out_of_order(text: &str) -> Option<&'static str> {
+    const PROGRAMS: [&str; 4] = ["willis ", "cargo ", "pip ", "python"];
+    let first = text.lines().position(|l| l.starts_with("```"))?;
+    let command = text.lines().nth(first + 1)?.trim_start_matches("$ ");
+    let before: Vec<&str> = text.lines().take(first).collect();
+    if !PROGRAMS.iter().any(|p| command.starts_with(p)) {
+        return Some("the first block is no command");
+    }
+    if before.iter().any(|l| l.starts_with("## ")) {
+        return Some("a heading stands before the first command");
+    }
+    before.iter().any(|l| l.starts_with("![")).then_some("a picture stands before the first command")
+}
+
+#[test]
+fn every_chapter_answers_before_it_explains() {
+    for page in chapters() {
+        assert_eq!(out_of_order(&read(&root().join(&page))), None, "{page}");
+    }
+    let [right, file, heading, picture] =
+        ["```sh\nwillis x\n```\n", "```toml\na = 1\n```\n", "## A\n```sh\nwillis x\n```\n", "![a](b)\n```sh\nwillis x\n"]
+            .map(out_of_order);
+    assert!(right.is_none() && file.is_some() && heading.is_some() && picture.is_some());
+}
+
 #[test]
 fn every_figure_is_shown() {
     let shown: BTreeSet<String> = pages()
