@@ -12,6 +12,16 @@ use crate::{examples, tools, topics};
 
 /// The whole command line.
 pub fn command() -> Command {
+    command_for(None)
+}
+
+/// The command line, of which only this command is to be run: the others have their names alone, because what all options
+/// of all questions are takes longer to say than many a question to answer.
+fn command_for(only: Option<&str>) -> Command {
+    let of_name = |name: &'static str, whole: &dyn Fn() -> Command| match only.is_none_or(|only| only == name) {
+        true => shown(whole()),
+        false => Command::new(name),
+    };
     let color = Arg::new("color")
         .long("color")
         .global(true)
@@ -32,13 +42,20 @@ pub fn command() -> Command {
         .arg_required_else_help(true)
         .arg(color);
     for entry in QUESTIONS {
-        all = all.subcommand(of(entry));
+        all = all.subcommand(of_name(entry.name, &|| of(entry)));
         // Shards are put together where sweeps are made.
         if entry.name == "sweep" {
-            all = all.subcommands(tools::TOOLS.iter().filter(|t| t.name == "merge").map(|t| (t.command)()));
+            let merge = tools::TOOLS.iter().filter(|t| t.name == "merge");
+            all = all.subcommands(merge.map(|t| of_name(t.name, &t.command)));
         }
     }
-    all.subcommands(tools::TOOLS.iter().filter(|t| t.name != "merge").map(|t| (t.command)())).mut_subcommands(shown)
+    let others = tools::TOOLS.iter().filter(|t| t.name != "merge");
+    all.subcommands(others.map(|t| of_name(t.name, &t.command)))
+}
+
+/// Whether there is such a command.
+fn is_known(name: &str) -> bool {
+    QUESTIONS.iter().map(|q| q.name).chain(tools::TOOLS.iter().map(|t| t.name)).any(|n| n == name)
 }
 
 /// A command whose help ends with an example.
@@ -50,19 +67,20 @@ fn shown(command: Command) -> Command {
 
 /// What was said on the command line; a file name alone is analysed.
 pub fn matches(words: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
-    let command = command();
     let mut words: Vec<OsString> = words.into_iter().collect();
     let is_value = |k: usize| k > 1 && words[k - 1] == "--color";
     let first = (1..words.len()).find(|&k| !words[k].to_string_lossy().starts_with("--") && !is_value(k));
     if let Some(k) = first {
         let word = words[k].to_string_lossy();
-        let known = command.get_subcommands().any(|c| c.get_name() == word) || word.starts_with('-');
+        let known = is_known(&word) || word.starts_with('-');
         let file = word == "-" || word.ends_with(".toml") || std::path::Path::new(&words[k]).is_file();
         if file && (!known || word == "-") {
             words.insert(k, "analyze".into());
         }
     }
-    command.try_get_matches_from(words)
+    // Behind an option, which may ask for the help of all, stands no command alone.
+    let only = words.get(1).and_then(|w| w.to_str()).filter(|w| is_known(w)).map(str::to_owned);
+    command_for(only.as_deref()).try_get_matches_from(words)
 }
 
 /// `0.5%` or `0.005`

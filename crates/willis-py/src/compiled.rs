@@ -1,9 +1,9 @@
 //! Compiled trains over whole arrays.
 
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use willis::compiled::{self, BatchInputs, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag};
+use willis::compiled::{self, BatchInputs, CompiledOutput, CompiledTrain, PowerLoss, ShaftDrag, Workspace};
 use willis::train::Train;
 
 use crate::refused::wrong;
@@ -96,10 +96,84 @@ impl Compiled {
         points: usize,
         threads: usize,
     ) -> PyResult<(Vec<Bound<'py, PyArray1<f64>>>, usize)> {
+        self.stored(py, &inputs, points, threads)
+    }
+
+    /// The same, rounded to single precision.
+    fn evaluate_f32<'py>(
+        &self,
+        py: Python<'py>,
+        inputs: Vec<PyReadonlyArray1<'py, f64>>,
+        points: usize,
+        threads: usize,
+    ) -> PyResult<(Vec<Bound<'py, PyArray1<f32>>>, usize)> {
+        self.stored(py, &inputs, points, threads)
+    }
+
+    /// The sum of each result over all points, nothing stored, and at how many points there is not one answer.
+    fn sum(
+        &self,
+        py: Python<'_>,
+        inputs: Vec<PyReadonlyArray1<'_, f64>>,
+        points: usize,
+    ) -> PyResult<(Vec<f64>, usize)> {
         let slices = self.slices(&inputs, points)?;
-        let arrays: Vec<_> = (0..self.train.outputs()).map(|_| PyArray1::<f64>::zeros(py, points, false)).collect();
+        Ok(py.detach(|| {
+            let constant = constants(&slices, points);
+            let mut room = self.train.workspace();
+            let (mut sums, mut part, mut odd, mut at) = (vec![0.0; self.train.outputs()], vec![], 0, 0);
+            while at < points {
+                let len = BLOCK.min(points - at);
+                let own = block(&slices, &constant, at, len);
+                let (speeds, torques) = own.split_at(self.speeds);
+                part.resize(sums.len(), 0.0);
+                odd += self.train.sum_batch(&BatchInputs { speeds, torques }, &mut room, &mut part);
+                sums.iter_mut().zip(&part).for_each(|(s, p)| *s += p);
+                at += len;
+            }
+            (sums, odd)
+        }))
+    }
+}
+
+/// Blocks of the inputs that are the same at all points; empty for the others.
+fn constants(slices: &[&[f64]], points: usize) -> Vec<Vec<f64>> {
+    let of = |s: &&[f64]| if s.len() == points { vec![] } else { vec![s[0]; BLOCK.min(points)] };
+    slices.iter().map(of).collect()
+}
+
+/// A number of the results.
+trait Stored: Element + Send {
+    fn fill(train: &CompiledTrain, points: &BatchInputs<'_>, room: &mut Workspace, out: &mut [&mut [Self]]) -> usize
+    where
+        Self: Sized;
+}
+
+impl Stored for f64 {
+    fn fill(train: &CompiledTrain, points: &BatchInputs<'_>, room: &mut Workspace, out: &mut [&mut [f64]]) -> usize {
+        train.evaluate_batch(points, room, out)
+    }
+}
+
+impl Stored for f32 {
+    fn fill(train: &CompiledTrain, points: &BatchInputs<'_>, room: &mut Workspace, out: &mut [&mut [f32]]) -> usize {
+        train.evaluate_batch_f32(points, room, out)
+    }
+}
+
+impl Compiled {
+    /// Results at all points, the points shared out among threads.
+    fn stored<'py, T: Stored>(
+        &self,
+        py: Python<'py>,
+        inputs: &[PyReadonlyArray1<'py, f64>],
+        points: usize,
+        threads: usize,
+    ) -> PyResult<(Vec<Bound<'py, PyArray1<T>>>, usize)> {
+        let slices = self.slices(inputs, points)?;
+        let arrays: Vec<_> = (0..self.train.outputs()).map(|_| PyArray1::<T>::zeros(py, points, false)).collect();
         let mut writable: Vec<_> = arrays.iter().map(|a| a.readwrite()).collect();
-        let mut out: Vec<&mut [f64]> =
+        let mut out: Vec<&mut [T]> =
             writable.iter_mut().map(|w| w.as_slice_mut().map_err(PyErr::from)).collect::<PyResult<_>>()?;
         let odd = py.detach(|| {
             let constant = constants(&slices, points);
@@ -136,39 +210,6 @@ impl Compiled {
         Ok((arrays, odd))
     }
 
-    /// The sum of each result over all points, nothing stored, and at how many points there is not one answer.
-    fn sum(
-        &self,
-        py: Python<'_>,
-        inputs: Vec<PyReadonlyArray1<'_, f64>>,
-        points: usize,
-    ) -> PyResult<(Vec<f64>, usize)> {
-        let slices = self.slices(&inputs, points)?;
-        Ok(py.detach(|| {
-            let constant = constants(&slices, points);
-            let mut room = self.train.workspace();
-            let (mut sums, mut part, mut odd, mut at) = (vec![0.0; self.train.outputs()], vec![], 0, 0);
-            while at < points {
-                let len = BLOCK.min(points - at);
-                let own = block(&slices, &constant, at, len);
-                let (speeds, torques) = own.split_at(self.speeds);
-                part.resize(sums.len(), 0.0);
-                odd += self.train.sum_batch(&BatchInputs { speeds, torques }, &mut room, &mut part);
-                sums.iter_mut().zip(&part).for_each(|(s, p)| *s += p);
-                at += len;
-            }
-            (sums, odd)
-        }))
-    }
-}
-
-/// Blocks of the inputs that are the same at all points; empty for the others.
-fn constants(slices: &[&[f64]], points: usize) -> Vec<Vec<f64>> {
-    let of = |s: &&[f64]| if s.len() == points { vec![] } else { vec![s[0]; BLOCK.min(points)] };
-    slices.iter().map(of).collect()
-}
-
-impl Compiled {
     fn slices<'a>(&self, inputs: &'a [PyReadonlyArray1<'_, f64>], points: usize) -> PyResult<Vec<&'a [f64]>> {
         if inputs.len() != self.speeds + self.torques {
             return Err(PyValueError::new_err("as many inputs as there are speeds and torques"));
@@ -181,13 +222,13 @@ impl Compiled {
     }
 
     /// One thread's part.
-    fn part(
+    fn part<T: Stored>(
         &self,
         slices: &[&[f64]],
         constant: &[Vec<f64>],
         from: usize,
         size: usize,
-        mut out: Vec<&mut [f64]>,
+        mut out: Vec<&mut [T]>,
     ) -> usize {
         let mut room = self.train.workspace();
         let (mut odd, mut at) = (0, from);
@@ -205,7 +246,7 @@ impl Compiled {
             }
             let inputs = block(slices, constant, at, len);
             let (speeds, torques) = inputs.split_at(self.speeds);
-            odd += self.train.evaluate_batch(&BatchInputs { speeds, torques }, &mut room, &mut own);
+            odd += T::fill(&self.train, &BatchInputs { speeds, torques }, &mut room, &mut own);
             at += len;
         }
     }

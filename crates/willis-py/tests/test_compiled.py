@@ -46,6 +46,21 @@ def test_threads_and_blocks_change_no_bit(automatic: willis.Train) -> None:
     assert one.mean(w, 100.0)["efficiency"] == pytest.approx(constant.mean(), rel=1e-12)
 
 
+def test_single_precision_is_that_of_double(automatic: willis.Train) -> None:
+    compiled = automatic.compile(state="3")
+    torque = np.linspace(-300, 300, 5001)
+    for threads in (1, 3):
+        compiled.threads = threads
+        for outputs in ("efficiency", ["loss", "efficiency", "output.torque", "input.torque"]):
+            double = compiled.evaluate(speed=150.0, torque=torque, outputs=outputs)
+            single = compiled.evaluate(speed=150.0, torque=torque, outputs=outputs, dtype=np.float32)
+            for name, x in double.items():
+                assert single[name].dtype == np.float32
+                assert np.array_equal(x.astype(np.float32), single[name], equal_nan=True)
+    with pytest.raises(TypeError, match="float64 or float32"):
+        compiled.evaluate(150.0, torque, dtype="int32")
+
+
 def test_two_freedoms_by_names(examples) -> None:  # type: ignore[no-untyped-def]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", willis.TrainWarning)

@@ -1,5 +1,5 @@
-//! Speed of whole answers: points with computed losses, sensitivity, uncertainty, regimes, and how all grow with the number
-//! of sets. `cargo xtask bench` runs this.
+//! Speed of whole answers: from text to answer, points with computed losses, sensitivity, uncertainty, regimes, and how all grow with the number
+//! of sets, with the allocator of the program. `cargo xtask bench` runs this.
 
 mod trains;
 
@@ -11,12 +11,16 @@ use std::time::Instant;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use willis::analysis::{Selection, analyze, operate};
+use willis::compiled::{CompileRequest, CompiledOutput};
 use willis::dynamics::{Batch, FixedStep, Options, simulate};
 use willis::model::Model;
 use willis::regimes::{RegimeSelection, regimes};
 use willis::study::{Axis, Hold, PointSetup, Sweep, UncertaintyRequest, sensitivity, uncertainty};
 use willis::train::Train;
 use willis::work::Serial;
+
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 /// Values on each axis of a grid of points with computed losses.
 const SIDE: usize = 64;
@@ -87,14 +91,6 @@ fn sure(c: &mut Criterion) {
     group.sample_size(10);
     group.bench_function("stage-uncertainty", |b| b.iter(|| uncertainty(&model, &request, &Serial).unwrap()));
     group.finish();
-}
-
-/// Bytes a second that a copy of a long array reads and writes.
-fn memory(_: &mut Criterion) {
-    const BYTES: usize = 1 << 27;
-    let (from, mut to) = (vec![1u8; BYTES], vec![0u8; BYTES]);
-    let (seconds, spread) = shortest(9, || black_box(&mut to).copy_from_slice(black_box(&from)));
-    record("memory", &[("bytes_per_s", 2.0 * BYTES as f64 / seconds), ("spread", spread)]);
 }
 
 /// The example whose regimes take longest.
@@ -177,5 +173,45 @@ fn growth(_: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, memory, physical, sure, all_regimes, batches, growth);
+/// From text to every ratio and efficiency, driving and coasting, of every gear.
+fn cold(c: &mut Criterion) {
+    let mut group = c.benchmark_group("cold");
+    let text = include_str!("../../../examples/zf-8hp70.toml");
+    group.bench_function("eight-speed-text-to-answer", |b| {
+        b.iter(|| analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
+    });
+    let texts: Vec<String> = [
+        include_str!("../../../examples/simpson-ford-c4.toml"),
+        include_str!("../../../examples/zf-4hp22.toml"),
+        include_str!("../../../examples/zf-5hp24.toml"),
+        include_str!("../../../examples/mercedes-w5a580.toml"),
+        include_str!("../../../examples/zf-8hp-gen4.toml"),
+        include_str!("../../../examples/mercedes-9g-tronic.toml"),
+        include_str!("../../../examples/ford-10r80.toml"),
+        include_str!("../../../examples/aisin-tl-80sn.toml"),
+        include_str!("../../../examples/aisin-ab80.toml"),
+    ]
+    .iter()
+    .flat_map(|t| {
+        [
+            t.to_string(),
+            t.replace("basic_efficiency = 0.98", "basic_efficiency = 0.97")
+                .replace("external = 0.98", "external = 0.97"),
+        ]
+    })
+    .collect();
+    group.bench_function("nine-automatics-two-loss-levels", |b| {
+        b.iter(|| {
+            for text in &texts {
+                black_box(analyze(&Train::from_toml(text).unwrap(), &Selection::default()).unwrap());
+            }
+        });
+    });
+    let duty = CompileRequest::new(["input"], ["input"]).state("5").output(CompiledOutput::Efficiency);
+    let train = Train::from_toml(text).unwrap();
+    group.bench_function("eight-speed-compile-one-gear", |b| b.iter(|| train.compile(black_box(&duty)).unwrap()));
+    group.finish();
+}
+
+criterion_group!(benches, cold, physical, sure, all_regimes, batches, growth);
 criterion_main!(benches);

@@ -1,4 +1,4 @@
-//! Speed of the compiled train, the cold start, and nothing else. `cargo xtask bench` runs this
+//! Speed of the compiled train, and nothing else. `cargo xtask bench` runs this
 //! beside the Python baselines of `benches/baselines/` and prints ratios.
 //!
 //! Checksums go to `target/willis-bench/checksums.jsonl` in the baselines' format, so that a ratio
@@ -8,9 +8,9 @@ use std::fs;
 use std::hint::black_box;
 use std::io::Write;
 use std::path::Path;
+use std::time::Instant;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use willis::analysis::{Selection, analyze};
 use willis::compiled::{
     BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, PowerLoss, ShaftDrag,
 };
@@ -104,6 +104,10 @@ fn map(c: &mut Criterion) {
         b.iter(|| efficiency.evaluate_batch(&input, &mut work, &mut [&mut e[..]]));
     });
     record("map-efficiency", &[("efficiency", sum(e))], n);
+    let mut single = vec![0.5f32; n];
+    group.bench_function("map-efficiency-f32", |b| {
+        b.iter(|| efficiency.evaluate_batch_f32(&input, &mut work, &mut [&mut single[..]]));
+    });
     let mut sums = [0.0];
     group.bench_function("map-reduced", |b| b.iter(|| efficiency.sum_batch(&input, &mut work, black_box(&mut sums))));
     record("map-reduced", &[("efficiency", sums[0])], n);
@@ -236,45 +240,22 @@ fn gears(c: &mut Criterion) {
     group.finish();
 }
 
-/// From text to every ratio and efficiency, driving and coasting, of every gear.
-fn cold(c: &mut Criterion) {
-    let mut group = c.benchmark_group("cold");
-    let text = include_str!("../../../examples/zf-8hp70.toml");
-    group.bench_function("eight-speed-text-to-answer", |b| {
-        b.iter(|| analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
-    });
-    let texts: Vec<String> = [
-        include_str!("../../../examples/simpson-ford-c4.toml"),
-        include_str!("../../../examples/zf-4hp22.toml"),
-        include_str!("../../../examples/zf-5hp24.toml"),
-        include_str!("../../../examples/mercedes-w5a580.toml"),
-        include_str!("../../../examples/zf-8hp-gen4.toml"),
-        include_str!("../../../examples/mercedes-9g-tronic.toml"),
-        include_str!("../../../examples/ford-10r80.toml"),
-        include_str!("../../../examples/aisin-tl-80sn.toml"),
-        include_str!("../../../examples/aisin-ab80.toml"),
-    ]
-    .iter()
-    .flat_map(|t| {
-        [
-            t.to_string(),
-            t.replace("basic_efficiency = 0.98", "basic_efficiency = 0.97")
-                .replace("external = 0.98", "external = 0.97"),
-        ]
-    })
-    .collect();
-    group.bench_function("nine-automatics-two-loss-levels", |b| {
-        b.iter(|| {
-            for text in &texts {
-                black_box(analyze(&Train::from_toml(text).unwrap(), &Selection::default()).unwrap());
-            }
-        });
-    });
-    let duty = CompileRequest::new(["input"], ["input"]).state("5").output(CompiledOutput::Efficiency);
-    let train = eight_speed();
-    group.bench_function("eight-speed-compile-one-gear", |b| b.iter(|| train.compile(black_box(&duty)).unwrap()));
-    group.finish();
+/// Bytes a second that a copy of a long array reads and writes: the shortest of several, and how much longer the middle one
+/// took.
+fn memory(_: &mut Criterion) {
+    const BYTES: usize = 1 << 27;
+    let (from, mut to) = (vec![1u8; BYTES], vec![0u8; BYTES]);
+    let mut seconds: Vec<f64> = (0..9)
+        .map(|_| {
+            let start = Instant::now();
+            black_box(&mut to).copy_from_slice(black_box(&from));
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    seconds.sort_by(f64::total_cmp);
+    let [bytes_per_s, spread] = [2.0 * BYTES as f64 / seconds[0], seconds[4] / seconds[0] - 1.0];
+    record("memory", &[("bytes_per_s", bytes_per_s), ("spread", spread)], 1);
 }
 
-criterion_group!(benches, map, automatic, gears, cold);
+criterion_group!(benches, memory, map, automatic, gears);
 criterion_main!(benches);

@@ -41,7 +41,8 @@ pub(crate) use target::{oil_temperature, quantity};
 #[derive(Clone, Debug)]
 pub struct Model {
     text: String,
-    document: Document,
+    /// The text as a document, once somebody asks for a path.
+    document: OnceLock<Document>,
     /// The tables that the text names, or why they cannot be read.
     files: BTreeMap<String, Result<String, String>>,
     /// Laws in force over those of the text: family and name.
@@ -114,10 +115,9 @@ impl Model {
         let (Some(train), Some(specification)) = (reading.train.take(), reading.specification.take()) else {
             return Err(reading.diagnostics);
         };
-        let document = Document::parse(text).expect("the text was read as TOML");
         Ok(Self {
             text: text.to_owned(),
-            document,
+            document: OnceLock::new(),
             files,
             laws: vec![],
             speed_tolerance: Train::SAME_SPEED,
@@ -175,8 +175,8 @@ impl Model {
     /// # Errors
     /// There is no such quantity; with the nearest.
     pub fn get(&self, path: &str) -> Result<Option<String>, Diagnostics> {
-        let key = self.document.find(&of_file(path)).map_err(one)?;
-        Ok(self.document.value(&key))
+        let key = self.document().find(&of_file(path)).map_err(one)?;
+        Ok(self.document().value(&key))
     }
 
     /// Sets a quantity by its path: `"23"`, `"12 mm"`, `"mineral"`. All else stays as written.
@@ -196,7 +196,11 @@ impl Model {
         &self,
         settings: impl IntoIterator<Item = (P, V)>,
     ) -> Result<Self, Diagnostics> {
-        let mut document = self.document.clone();
+        let mut settings = settings.into_iter().peekable();
+        if settings.peek().is_none() {
+            return Ok(self.clone());
+        }
+        let mut document = self.document().clone();
         let mut laws = self.laws.clone();
         for (path, value) in settings {
             let path = of_file(path.as_ref());
@@ -221,7 +225,7 @@ impl Model {
 
     /// The text as a document whose quantities are found by path.
     pub fn document(&self) -> &Document {
-        &self.document
+        self.document.get_or_init(|| Document::parse(&self.text).expect("the text was read as TOML"))
     }
 
     /// The tables that the text names, with their texts, as far as they could be read.
@@ -282,7 +286,7 @@ impl Model {
         let (train, alone) = self.alone.get_or_init(|| {
             let mut train = self.train.clone().without_questions();
             let inputs = train.inputs_alone().into_iter();
-            let keys = inputs.filter_map(|k| Some((self.document.find(&train.inputs[k].path).ok()?, k))).collect();
+            let keys = inputs.filter_map(|k| Some((self.document().find(&train.inputs[k].path).ok()?, k))).collect();
             (train, keys)
         });
         let mut train = train.clone();

@@ -50,6 +50,9 @@ class Compiled:
     def evaluate(
         self, inputs: Sequence[NDArray[np.float64]], points: int, threads: int
     ) -> tuple[list[NDArray[np.float64]], int]: ...
+    def evaluate_f32(
+        self, inputs: Sequence[NDArray[np.float64]], points: int, threads: int
+    ) -> tuple[list[NDArray[np.float32]], int]: ...
     def sum(self, inputs: Sequence[NDArray[np.float64]], points: int) -> tuple[list[float], int]: ...
 
 class Table:

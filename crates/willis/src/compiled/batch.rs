@@ -128,6 +128,53 @@ impl CompiledTrain {
         self.store(Source::Grid(&self.layout(grid)), points, work, out)
     }
 
+    /// The results of [`CompiledTrain::evaluate_batch`], rounded to single precision: half the memory to write, and the same
+    /// work otherwise. A result beyond the range of single precision is infinite.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::compiled::{BatchInputs, CompileRequest, CompiledOutput};
+    /// use willis::train::{SetSpec, Train};
+    ///
+    /// let train = Train::builder("reducer")
+    ///     .members(["sun", "carrier"])
+    ///     .terminals(["sun", "carrier"])
+    ///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").mesh_efficiency(0.99))
+    ///     .build()?;
+    /// let compiled = train.compile(&CompileRequest::new(["sun"], ["sun"]).output(CompiledOutput::Efficiency))?;
+    /// let points = BatchInputs { speeds: &[&[100.0, 200.0]], torques: &[&[10.0, 10.0]] };
+    /// let mut out = [0f32; 2];
+    /// compiled.evaluate_batch_f32(&points, &mut compiled.workspace(), &mut [&mut out]);
+    /// // (1 + 7/3 · 0.99²)/(1 + 7/3)
+    /// assert_eq!(out, [0.98607f32; 2]);
+    /// # Ok::<(), willis::diagnostic::Diagnostics>(())
+    /// ```
+    ///
+    /// # Panics
+    /// As [`CompiledTrain::evaluate_batch`].
+    pub fn evaluate_batch_f32(&self, points: &BatchInputs<'_>, work: &mut Workspace, out: &mut [&mut [f32]]) -> usize {
+        let n = points.len(self.speeds, self.torques);
+        self.store_rounded(Source::Arrays(points), 0..n, work, out)
+    }
+
+    /// The results of [`CompiledTrain::evaluate_grid`], rounded to single precision.
+    ///
+    /// # Example
+    /// See [`CompiledTrain::evaluate_batch_f32`] and [`GridInputs`].
+    ///
+    /// # Panics
+    /// As [`CompiledTrain::evaluate_grid`].
+    pub fn evaluate_grid_f32(
+        &self,
+        grid: &GridInputs<'_>,
+        points: Range<usize>,
+        work: &mut Workspace,
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        assert!(points.end <= grid.len(), "points of the grid");
+        self.store_rounded(Source::Grid(&self.layout(grid)), points, work, out)
+    }
+
     /// What each output is over many points: its sum and its extremes, with no result stored. Returns how many points are
     /// not unique.
     ///
@@ -214,6 +261,41 @@ impl CompiledTrain {
             start += len;
         }
         odd
+    }
+
+    /// As [`Self::store`], block by block through the arrays of the workspace.
+    fn store_rounded(
+        &self,
+        source: Source<'_, '_>,
+        points: Range<usize>,
+        work: &mut Workspace,
+        out: &mut [&mut [f32]],
+    ) -> usize {
+        assert_eq!(out.len(), self.outputs.len(), "one slice for each output of the request");
+        assert!(out.iter().all(|o| o.len() == points.len()), "outputs as long as the inputs");
+        let mut odd = 0;
+        for start in points.clone().step_by(self.block()) {
+            let now = start..points.end.min(start + self.block());
+            odd += self.fill_work(source, now.clone(), work, &self.outputs);
+            for (c, o) in self.outputs.iter().zip(&mut *out) {
+                let to = &mut o[start - points.start..][..now.len()];
+                match *c {
+                    Column::Input(i) => {
+                        let mut own = [0.0; SUM_BLOCK];
+                        let own = &mut own[..now.len()];
+                        source.torque(self, i, now.clone(), own);
+                        kernel::round(self.arch, own, to);
+                    }
+                    _ => kernel::round(self.arch, self.in_work(&work.chunk, &work.single, c, now.len()), to),
+                }
+            }
+        }
+        odd
+    }
+
+    /// Points that are worked off at once where results stay in the workspace: rows of a grid are cut as seldom as can be.
+    fn block(&self) -> usize {
+        if self.single.is_some() { SUM_BLOCK } else { CHUNK }
     }
 
     /// The fused kernel over all points.
@@ -327,10 +409,8 @@ impl CompiledTrain {
         let wanted = &self.outputs[..out.len()];
         let mut odd = 0;
         work.sums.fill([0.0; SUMS]);
-        // Rows are cut as seldom as can be.
-        let step = if self.single.is_some() { SUM_BLOCK } else { CHUNK };
-        for start in points.clone().step_by(step) {
-            let now = start..points.end.min(start + step);
+        for start in points.clone().step_by(self.block()) {
+            let now = start..points.end.min(start + self.block());
             odd += self.fill_work(source, now.clone(), work, wanted);
             for (k, (c, o)) in wanted.iter().zip(&mut *out).enumerate() {
                 match *c {

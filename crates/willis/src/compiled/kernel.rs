@@ -809,6 +809,14 @@ lanes! {
             out[i] = if power_in[i] >= LEAST_POWER { e } else { none };
         }
     }
+    /// To single precision.
+    Round<'a> { x: &'a [f64], out: &'a mut [f32] } -> () {
+        let n = out.len();
+        let x = &x[..n];
+        for i in 0..n {
+            out[i] = x[i] as f32;
+        }
+    }
     /// Sum in 32 partial sums.
     Sum<'a> { x: &'a [f64] } -> f64 {
         let (chunks, rest) = x.as_chunks::<32>();
@@ -933,4 +941,9 @@ pub(super) fn add(arch: pulp::Arch, x: &[f64], sum: &mut [f64; SUMS], [least, mo
 /// Sum of a slice.
 pub(super) fn sum(arch: pulp::Arch, x: &[f64]) -> f64 {
     arch.dispatch(Sum { x })
+}
+
+/// To single precision.
+pub(super) fn round(arch: pulp::Arch, x: &[f64], out: &mut [f32]) {
+    arch.dispatch(Round { x, out });
 }

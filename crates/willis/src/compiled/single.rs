@@ -47,6 +47,8 @@ struct SinglePoint {
     drive: f64,
     loss: f64,
     efficiency: f64,
+    /// Whether nothing rests and every number has all its digits.
+    usual: bool,
 }
 
 impl SinglePoint {
@@ -93,7 +95,7 @@ impl Row {
         let loss = pl + pa + pb;
         // Powers beyond floating point have no efficiency: nothing times infinity is no number.
         let efficiency = if power_in >= LEAST_POWER { (power_in - loss) / power_in + loss * 0.0 } else { 0.0 };
-        SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive, loss, efficiency }
+        SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive, loss, efficiency, usual: false }
     }
 
     /// The signs at a point: which powers enter, and whether p drives. None of them is 0 by chance.
@@ -159,7 +161,17 @@ impl Stretch {
         let power_in = pos(pl, l) + pos(pa, m) + pos(pb, n);
         let loss = pl + pa + pb;
         let efficiency = if power_in >= LEAST_POWER { (power_in - loss) / power_in } else { 0.0 };
-        SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive: 0.0, loss, efficiency }
+        SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive: 0.0, loss, efficiency, usual: true }
+    }
+}
+
+/// The loaded shaft first, then the open ones in order.
+#[inline(always)]
+fn loaded_first<const LOADED: usize>([a, b, c]: [(f64, f64); 3]) -> ((f64, f64), (f64, f64), (f64, f64)) {
+    match LOADED {
+        0 => (a, b, c),
+        1 => (b, a, c),
+        _ => (c, a, b),
     }
 }
 
@@ -204,13 +216,34 @@ impl Single {
         let w2 = t0 * w0 + t1 * w1;
         let drag = |d: ShaftDrag, w: f64| (if w == 0.0 { 0.0 } else { d.coulomb.copysign(w) }) + d.viscous * w;
         let (d0, d1, d2) = (drag(d0, w0), drag(d1, w1), drag(d2, w2));
-        // Loaded shaft first, then the open ones in order.
-        let ((wl, dl), (wa, da), (wb, db)) = match LOADED {
-            0 => ((w0, d0), (w1, d1), (w2, d2)),
-            1 => ((w1, d1), (w0, d0), (w2, d2)),
-            _ => ((w2, d2), (w0, d0), (w1, d1)),
-        };
+        let ((wl, dl), (wa, da), (wb, db)) = loaded_first::<LOADED>([(w0, d0), (w1, d1), (w2, d2)]);
         Row { relative: r0 * w0 + r1 * w1, speed: [wl, wa, wb], drag: [dl, da, db], gain: [a, b] }
+    }
+
+    /// One point, right where it says that it is usual: the operations of [`Self::point`] without those that
+    /// only zeros and numbers at the ends of floating point need.
+    #[inline(always)]
+    fn usual<const LOADED: usize>(&self, w0: f64, w1: f64, torque: f64) -> SinglePoint {
+        let Self { third: [t0, t1], drive: [r0, r1], gain: [[ap, aq, _], [bp, bq, _]], drag: [d0, d1, d2], .. } = *self;
+        let w2 = t0 * w0 + t1 * w1;
+        let drag = |d: ShaftDrag, w: f64| d.coulomb.copysign(w) + d.viscous * w;
+        let (d0, d1, d2) = (drag(d0, w0), drag(d1, w1), drag(d2, w2));
+        let ((wl, dl), (wa, da), (wb, db)) = loaded_first::<LOADED>([(w0, d0), (w1, d1), (w2, d2)]);
+        let reaches = torque - dl;
+        let drive = reaches * (r0 * w0 + r1 * w1);
+        let p_drives = drive > 0.0;
+        let ta = (if p_drives { ap } else { aq }) * reaches + da;
+        let tb = (if p_drives { bp } else { bq }) * reaches + db;
+        let (pl, pa, pb) = (torque * wl, ta * wa, tb * wb);
+        let pos = |p: f64| if p > 0.0 { p } else { 0.0 };
+        let power_in = pos(pl) + pos(pa) + pos(pb);
+        let loss = pl + pa + pb;
+        let efficiency = (power_in - loss) / power_in;
+        let has_all_digits = |x: f64| x.to_bits() & EXPONENT != 0;
+        let inputs = has_all_digits(w0) & has_all_digits(w1) & has_all_digits(torque);
+        let usual =
+            inputs & (w2 != 0.0) & (drive != 0.0) & (power_in >= LEAST_POWER) & (efficiency.abs() < f64::INFINITY);
+        SinglePoint { torque: [ta, tb], power: [pl, pa, pb], drive, loss, efficiency, usual }
     }
 
     /// One point.
@@ -255,7 +288,7 @@ impl Single {
                     arch.dispatch(SingleOne::<LOADED, 2> { set, w0, w1, torque, out });
                 }
                 if let Some(out) = efficiency {
-                    arch.dispatch(SingleOne::<LOADED, 3> { set, w0, w1, torque, out });
+                    arch.dispatch(SingleEfficiency::<LOADED> { set, w0, w1, torque, out });
                 }
             }
         }
@@ -321,6 +354,8 @@ impl Row {
     }
 }
 
+/// Points of arrays that are computed again where one of them is not usual.
+const BLOCK: usize = 128;
 /// Points whose signs are those at their ends.
 const STRETCH: usize = 64;
 /// Most ends of a chunk, filled up to whole vectors.
@@ -443,10 +478,23 @@ lanes! {
         let (w0, w1) = (&w0[..n], &w1[..n]);
         let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
         let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            loss[i] = p.loss;
-            efficiency[i] = p.efficiency;
+        for start in (0..n).step_by(BLOCK) {
+            let range = start..n.min(start + BLOCK);
+            let n = range.len();
+            let [w0, w1, torque] = [w0, w1, torque].map(|x| &x[range.clone()][..n]);
+            let (loss, efficiency) = (&mut loss[range.clone()][..n], &mut efficiency[range][..n]);
+            let mut usual = true;
+            for i in 0..n {
+                let p = set.usual::<LOADED>(w0[i], w1[i], torque[i]);
+                loss[i] = p.loss;
+                efficiency[i] = p.efficiency;
+                usual &= p.usual;
+            }
+            for i in if usual { 0..0 } else { 0..n } {
+                let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
+                loss[i] = p.loss;
+                efficiency[i] = p.efficiency;
+            }
         }
     }
     /// All results of a power split.
@@ -459,15 +507,54 @@ lanes! {
         let (first, second) = (&mut first[..n], &mut second[..n]);
         let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
         let set = *set;
-        for i in 0..n {
-            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-            first[i] = p.torque[0];
-            second[i] = p.torque[1];
-            loss[i] = p.loss;
-            efficiency[i] = p.efficiency;
+        for start in (0..n).step_by(BLOCK) {
+            let range = start..n.min(start + BLOCK);
+            let n = range.len();
+            let [w0, w1, torque] = [w0, w1, torque].map(|x| &x[range.clone()][..n]);
+            let (first, second) = (&mut first[range.clone()][..n], &mut second[range.clone()][..n]);
+            let (loss, efficiency) = (&mut loss[range.clone()][..n], &mut efficiency[range][..n]);
+            let mut usual = true;
+            for i in 0..n {
+                let p = set.usual::<LOADED>(w0[i], w1[i], torque[i]);
+                first[i] = p.torque[0];
+                second[i] = p.torque[1];
+                loss[i] = p.loss;
+                efficiency[i] = p.efficiency;
+                usual &= p.usual;
+            }
+            for i in if usual { 0..0 } else { 0..n } {
+                let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
+                first[i] = p.torque[0];
+                second[i] = p.torque[1];
+                loss[i] = p.loss;
+                efficiency[i] = p.efficiency;
+            }
         }
     }
-    /// One result of a power split: 0 and 1 the torques, 2 the loss, 3 the efficiency.
+    /// Efficiency of a power split.
+    SingleEfficiency<'a, const LOADED> {
+        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], out: &'a mut [f64],
+    } -> () {
+        let n = out.len();
+        let (w0, w1, torque) = (&w0[..n], &w1[..n], &torque[..n]);
+        let set = *set;
+        for start in (0..n).step_by(BLOCK) {
+            let range = start..n.min(start + BLOCK);
+            let n = range.len();
+            let [w0, w1, torque] = [w0, w1, torque].map(|x| &x[range.clone()][..n]);
+            let out = &mut out[range][..n];
+            let mut usual = true;
+            for i in 0..n {
+                let p = set.usual::<LOADED>(w0[i], w1[i], torque[i]);
+                out[i] = p.efficiency;
+                usual &= p.usual;
+            }
+            for i in if usual { 0..0 } else { 0..n } {
+                out[i] = set.point::<LOADED>(w0[i], w1[i], torque[i]).efficiency;
+            }
+        }
+    }
+    /// One result of a power split: 0 and 1 the torques, 2 the loss.
     SingleOne<'a, const LOADED, const WHAT> {
         set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], out: &'a mut [f64],
     } -> () {

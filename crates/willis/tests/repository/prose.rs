@@ -209,9 +209,13 @@ fn every_chapter_answers_before_it_explains() {
     for page in chapters() {
         assert_eq!(out_of_order(&read(&root().join(&page))), None, "{page}");
     }
-    let [right, file, heading, picture] =
-        ["```sh\nwillis x\n```\n", "```toml\na = 1\n```\n", "## A\n```sh\nwillis x\n```\n", "![a](b)\n```sh\nwillis x\n"]
-            .map(out_of_order);
+    let [right, file, heading, picture] = [
+        "```sh\nwillis x\n```\n",
+        "```toml\na = 1\n```\n",
+        "## A\n```sh\nwillis x\n```\n",
+        "![a](b)\n```sh\nwillis x\n",
+    ]
+    .map(out_of_order);
     assert!(right.is_none() && file.is_some() && heading.is_some() && picture.is_some());
 }
 

@@ -364,6 +364,20 @@ fn a_grid_is_its_arrays_to_the_last_bit() {
                             assert!(same, "train {at} output {k} at {point:?}: {} {}", x[i], y[i]);
                         }
                     }
+                    // In single precision, from arrays and from the grid.
+                    for of_grid in [false, true] {
+                        let mut rounded = vec![vec![f32::NAN; range.len()]; compiled.outputs()];
+                        let mut out: Vec<&mut [f32]> = rounded.iter_mut().map(|o| &mut o[..]).collect();
+                        let mut work = compiled.workspace();
+                        let own_odd = match of_grid {
+                            false => compiled.evaluate_batch_f32(&points, &mut work, &mut out),
+                            true => compiled.evaluate_grid_f32(&grid, range.clone(), &mut work, &mut out),
+                        };
+                        assert_eq!(odd, own_odd);
+                        for (x, y) in arrays.iter().flatten().zip(rounded.iter().flatten()) {
+                            assert!((*x as f32).to_bits() == y.to_bits() || x.is_nan() && y.is_nan(), "{x} {y}");
+                        }
+                    }
                     // Sums of 32, 2048 points at a time.
                     let expected = |x: &[f64], offset: usize| {
                         let mut all = OutputSummary::default();
