@@ -4,4 +4,5 @@ mod architecture;
 mod contracts;
 mod docs;
 mod how_to_add;
+mod profiles;
 mod prose;
