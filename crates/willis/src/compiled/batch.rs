@@ -274,8 +274,9 @@ impl CompiledTrain {
         assert_eq!(out.len(), self.outputs.len(), "one slice for each output of the request");
         assert!(out.iter().all(|o| o.len() == points.len()), "outputs as long as the inputs");
         let mut odd = 0;
-        for start in points.clone().step_by(self.block()) {
-            let now = start..points.end.min(start + self.block());
+        let block = self.block(source);
+        for start in points.clone().step_by(block) {
+            let now = start..points.end.min(start + block);
             odd += self.fill_work(source, now.clone(), work, &self.outputs);
             for (c, o) in self.outputs.iter().zip(&mut *out) {
                 let to = &mut o[start - points.start..][..now.len()];
@@ -293,9 +294,13 @@ impl CompiledTrain {
         odd
     }
 
-    /// Points that are worked off at once where results stay in the workspace: rows of a grid are cut as seldom as can be.
-    fn block(&self) -> usize {
-        if self.single.is_some() { SUM_BLOCK } else { CHUNK }
+    /// Points that are worked off at once where results stay in the workspace: rows of a grid are cut as seldom as can be,
+    /// arrays so that inputs and results stay in the first-level cache.
+    fn block(&self, source: Source<'_, '_>) -> usize {
+        match source {
+            Source::Grid(_) if self.single.is_some() => SUM_BLOCK,
+            _ => CHUNK,
+        }
     }
 
     /// The fused kernel over all points.
@@ -409,8 +414,9 @@ impl CompiledTrain {
         let wanted = &self.outputs[..out.len()];
         let mut odd = 0;
         work.sums.fill([0.0; SUMS]);
-        for start in points.clone().step_by(self.block()) {
-            let now = start..points.end.min(start + self.block());
+        let block = self.block(source);
+        for start in points.clone().step_by(block) {
+            let now = start..points.end.min(start + block);
             odd += self.fill_work(source, now.clone(), work, wanted);
             for (k, (c, o)) in wanted.iter().zip(&mut *out).enumerate() {
                 match *c {

@@ -54,6 +54,9 @@ pub(super) fn count_lines<'a>(spans: impl Iterator<Item = &'a mut Span>, text: &
     let (mut line, mut column) = (1, 1);
     let mut rest = wanted.iter().peekable();
     for (at, c) in text.char_indices().chain([(text.len(), '\n')]) {
+        if rest.peek().is_none() {
+            break;
+        }
         // Up to here: a byte inside a character belongs to that character.
         while rest.next_if(|w| **w < at + c.len_utf8()).is_some() {
             found.push((line, column));
