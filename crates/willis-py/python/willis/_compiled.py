@@ -130,31 +130,37 @@ class CompiledTrain:
         flat, shape, points = self._flat(args, named)
         core = self._core(tuple(map(_output, wanted)))
         threads = _threads(self.threads, points)
-        arrays: Sequence[NDArray[Any]]
+        arrays: list[NDArray[Any]]
         if np.dtype(dtype) == np.float64:
-            arrays, odd = core.evaluate(flat, points, threads)
+            double, odd = core.evaluate(flat, points, threads)
+            arrays = list(double)
         elif np.dtype(dtype) == np.float32:
-            arrays, odd = core.evaluate_f32(flat, points, threads)
+            single, odd = core.evaluate_f32(flat, points, threads)
+            arrays = list(single)
         else:
             raise TypeError(f"results are float64 or float32, not {np.dtype(dtype)}")
         self._tell(odd, points)
         return {name: array.reshape(shape) for name, array in zip(wanted, arrays, strict=True)}
 
-    def efficiency(self, *args: ArrayLike, **named: ArrayLike) -> NDArray[np.float64]:
+    def efficiency(self, *args: ArrayLike, dtype: DTypeLike = np.float64, **named: ArrayLike) -> NDArray[Any]:
         """Output power over input power; 0 where no power enters."""
-        return self.evaluate(*args, outputs="efficiency", **named)["efficiency"]
+        return self.evaluate(*args, outputs="efficiency", dtype=dtype, **named)["efficiency"]
 
-    def loss(self, *args: ArrayLike, **named: ArrayLike) -> NDArray[np.float64]:
+    def loss(self, *args: ArrayLike, dtype: DTypeLike = np.float64, **named: ArrayLike) -> NDArray[Any]:
         """All that is lost, W."""
-        return self.evaluate(*args, outputs="loss", **named)["loss"]
+        return self.evaluate(*args, outputs="loss", dtype=dtype, **named)["loss"]
 
-    def torque_of(self, member: str, *args: ArrayLike, **named: ArrayLike) -> NDArray[np.float64]:
+    def torque_of(
+        self, member: str, *args: ArrayLike, dtype: DTypeLike = np.float64, **named: ArrayLike
+    ) -> NDArray[Any]:
         """External torque on a terminal, N m."""
-        return self.evaluate(*args, outputs=f"{member}.torque", **named)[f"{member}.torque"]
+        return self.evaluate(*args, outputs=f"{member}.torque", dtype=dtype, **named)[f"{member}.torque"]
 
-    def speed_of(self, member: str, *args: ArrayLike, **named: ArrayLike) -> NDArray[np.float64]:
+    def speed_of(
+        self, member: str, *args: ArrayLike, dtype: DTypeLike = np.float64, **named: ArrayLike
+    ) -> NDArray[Any]:
         """Speed of a member, rad/s."""
-        return self.evaluate(*args, outputs=f"{member}.speed", **named)[f"{member}.speed"]
+        return self.evaluate(*args, outputs=f"{member}.speed", dtype=dtype, **named)[f"{member}.speed"]
 
     def mean(self, *args: ArrayLike, outputs: Sequence[str] | str = "efficiency", **named: ArrayLike) -> dict[str, float]:
         """The mean of results over all points, of which none is stored."""
