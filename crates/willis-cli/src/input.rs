@@ -103,9 +103,7 @@ pub(crate) fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> 
     let sets: Vec<(&str, &str)> = sets.collect::<Result<_, _>>()?;
     given.changes.extend(all("set").map(|s| format!("--set {}", quoted(s))));
     given.changes.extend(all("law").map(|l| format!("--law {}", quoted(l))));
-    if !sets.is_empty() {
-        given.model = given.model.with(sets).map_err(refused)?;
-    }
+    given.model = given.model.with(sets).map_err(refused)?;
     given.model = given.model.with_laws(laws).map_err(refused)?;
     if let Some(tolerance) = matches.try_get_one::<f64>("speed-tolerance").ok().flatten() {
         given.changes.push(format!("--speed-tolerance {tolerance}"));

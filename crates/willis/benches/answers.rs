@@ -1,5 +1,5 @@
-//! Speed of whole answers: from text to answer, points with computed losses, sensitivity, uncertainty, regimes, and how all grow with the number
-//! of sets, with the allocator of the program. `cargo xtask bench` runs this.
+//! Speed of whole answers: from text to answer, points with computed losses, sensitivity, uncertainty, regimes, and how all
+//! grow with the number of sets. With the allocator of the program; `cargo xtask bench` runs this.
 
 mod trains;
 

@@ -273,7 +273,8 @@ fn run(root: &Path) -> Result<(), String> {
     commands(&results, &mut table, &mut wrong)?;
     fs::write(folder.join("table.txt"), table.lines.join("\n") + "\n").map_err(|e| e.to_string())?;
     println!(
-        "\n{} goals missed, {} rows unsteady; {:.0} s. Rates a second, answers in seconds; the table is in target/willis-bench",
+        "\n{} goals missed, {} rows unsteady; {:.0} s. Rates a second, answers in seconds, limits in C those of the \
+         machine of the README; the table is in target/willis-bench",
         table.missed,
         table.unsteady,
         started.elapsed().as_secs_f64()

@@ -273,21 +273,36 @@ impl CompiledTrain {
     ) -> usize {
         assert_eq!(out.len(), self.outputs.len(), "one slice for each output of the request");
         assert!(out.iter().all(|o| o.len() == points.len()), "outputs as long as the inputs");
+        let from = points.start;
+        self.in_blocks(source, points, work, &self.outputs, |k, values, start| {
+            kernel::round(self.arch, values, &mut out[k][start - from..][..values.len()]);
+        })
+    }
+
+    /// Points block by block through the arrays of the workspace: `take` gets the values of each wanted output, its number and
+    /// the first point.
+    fn in_blocks(
+        &self,
+        source: Source<'_, '_>,
+        points: Range<usize>,
+        work: &mut Workspace,
+        wanted: &[Column],
+        mut take: impl FnMut(usize, &[f64], usize),
+    ) -> usize {
         let mut odd = 0;
         let block = self.block(source);
         for start in points.clone().step_by(block) {
             let now = start..points.end.min(start + block);
-            odd += self.fill_work(source, now.clone(), work, &self.outputs);
-            for (c, o) in self.outputs.iter().zip(&mut *out) {
-                let to = &mut o[start - points.start..][..now.len()];
+            odd += self.fill_work(source, now.clone(), work, wanted);
+            for (k, c) in wanted.iter().enumerate() {
                 match *c {
                     Column::Input(i) => {
                         let mut own = [0.0; SUM_BLOCK];
                         let own = &mut own[..now.len()];
                         source.torque(self, i, now.clone(), own);
-                        kernel::round(self.arch, own, to);
+                        take(k, own, start);
                     }
-                    _ => kernel::round(self.arch, self.in_work(&work.chunk, &work.single, c, now.len()), to),
+                    _ => take(k, self.in_work(&work.chunk, &work.single, c, now.len()), start),
                 }
             }
         }
@@ -411,32 +426,16 @@ impl CompiledTrain {
         work: &mut Workspace,
         out: &mut [OutputSummary],
     ) -> usize {
+        let mut sums = std::mem::take(&mut work.sums);
+        sums.fill([0.0; SUMS]);
         let wanted = &self.outputs[..out.len()];
-        let mut odd = 0;
-        work.sums.fill([0.0; SUMS]);
-        let block = self.block(source);
-        for start in points.clone().step_by(block) {
-            let now = start..points.end.min(start + block);
-            odd += self.fill_work(source, now.clone(), work, wanted);
-            for (k, (c, o)) in wanted.iter().zip(&mut *out).enumerate() {
-                match *c {
-                    Column::Input(i) => {
-                        let mut own = [0.0; SUM_BLOCK];
-                        let own = &mut own[..now.len()];
-                        source.torque(self, i, now.clone(), own);
-                        o.take_in(self.arch, own, start, &mut work.sums[k]);
-                    }
-                    _ => {
-                        let Workspace { chunk, single, sums, .. } = &mut *work;
-                        let values = self.in_work(chunk, single, c, now.len());
-                        o.take_in(self.arch, values, start, &mut sums[k]);
-                    }
-                }
-            }
-        }
-        for (o, sums) in out.iter_mut().zip(&work.sums) {
+        let odd = self.in_blocks(source, points, work, wanted, |k, values, start| {
+            out[k].take_in(self.arch, values, start, &mut sums[k]);
+        });
+        for (o, sums) in out.iter_mut().zip(&sums) {
             o.sum += sums.iter().sum::<f64>();
         }
+        work.sums = sums;
         odd
     }
 
@@ -448,19 +447,9 @@ impl CompiledTrain {
         let n = points.len(self.speeds, self.torques);
         assert_eq!(sums.len(), self.outputs.len(), "one sum for each output of the request");
         sums.fill(0.0);
-        let mut odd = 0;
-        for start in (0..n).step_by(CHUNK) {
-            let range = start..n.min(start + CHUNK);
-            let len = range.len();
-            odd += self.fill_work(Source::Arrays(points), range.clone(), work, &self.outputs);
-            for (sum, c) in sums.iter_mut().zip(&self.outputs) {
-                *sum += match *c {
-                    Column::Input(i) => kernel::sum(self.arch, &points.torques[i][range.clone()]),
-                    _ => kernel::sum(self.arch, self.in_work(&work.chunk, &work.single, c, len)),
-                };
-            }
-        }
-        odd
+        self.in_blocks(Source::Arrays(points), 0..n, work, &self.outputs, |k, values, _| {
+            sums[k] += kernel::sum(self.arch, values);
+        })
     }
 
     /// An output that is in the arrays of the workspace.

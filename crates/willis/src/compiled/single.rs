@@ -383,6 +383,31 @@ fn stretches(signs: &[u64; ENDS], len: usize) -> impl Iterator<Item = (std::ops:
     })
 }
 
+/// Computes points by [`Single::usual`], [`BLOCK`] at a time, and by [`Single::point`] those of a block that has another one.
+macro_rules! usual_first {
+    ($set:expr, [$w0:ident, $w1:ident, $torque:ident], [$($out:ident),+], |$i:ident, $p:ident| $store:block) => {
+        let (set, n) = ($set, $torque.len());
+        let ($w0, $w1) = (&$w0[..n], &$w1[..n]);
+        $(let $out = &mut $out[..n];)+
+        for start in (0..n).step_by(BLOCK) {
+            let range = start..n.min(start + BLOCK);
+            let n = range.len();
+            let [$w0, $w1, $torque] = [$w0, $w1, $torque].map(|x| &x[range.clone()][..n]);
+            $(let $out = &mut $out[range.clone()][..n];)+
+            let mut usual = true;
+            for $i in 0..n {
+                let $p = set.usual::<LOADED>($w0[$i], $w1[$i], $torque[$i]);
+                $store
+                usual &= $p.usual;
+            }
+            for $i in if usual { 0..0 } else { 0..n } {
+                let $p = set.point::<LOADED>($w0[$i], $w1[$i], $torque[$i]);
+                $store
+            }
+        }
+    };
+}
+
 lanes! {
     /// Loss and efficiency of a row.
     RowPowers<'a> {
@@ -474,85 +499,30 @@ lanes! {
     SinglePowers<'a, const LOADED> {
         set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
     } -> () {
-        let n = torque.len();
-        let (w0, w1) = (&w0[..n], &w1[..n]);
-        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
-        let set = *set;
-        for start in (0..n).step_by(BLOCK) {
-            let range = start..n.min(start + BLOCK);
-            let n = range.len();
-            let [w0, w1, torque] = [w0, w1, torque].map(|x| &x[range.clone()][..n]);
-            let (loss, efficiency) = (&mut loss[range.clone()][..n], &mut efficiency[range][..n]);
-            let mut usual = true;
-            for i in 0..n {
-                let p = set.usual::<LOADED>(w0[i], w1[i], torque[i]);
-                loss[i] = p.loss;
-                efficiency[i] = p.efficiency;
-                usual &= p.usual;
-            }
-            for i in if usual { 0..0 } else { 0..n } {
-                let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-                loss[i] = p.loss;
-                efficiency[i] = p.efficiency;
-            }
-        }
+        usual_first!(*set, [w0, w1, torque], [loss, efficiency], |i, p| {
+            loss[i] = p.loss;
+            efficiency[i] = p.efficiency;
+        });
     }
     /// All results of a power split.
     SingleAll<'a, const LOADED> {
         set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64],
         first: &'a mut [f64], second: &'a mut [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
     } -> () {
-        let n = torque.len();
-        let (w0, w1) = (&w0[..n], &w1[..n]);
-        let (first, second) = (&mut first[..n], &mut second[..n]);
-        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
-        let set = *set;
-        for start in (0..n).step_by(BLOCK) {
-            let range = start..n.min(start + BLOCK);
-            let n = range.len();
-            let [w0, w1, torque] = [w0, w1, torque].map(|x| &x[range.clone()][..n]);
-            let (first, second) = (&mut first[range.clone()][..n], &mut second[range.clone()][..n]);
-            let (loss, efficiency) = (&mut loss[range.clone()][..n], &mut efficiency[range][..n]);
-            let mut usual = true;
-            for i in 0..n {
-                let p = set.usual::<LOADED>(w0[i], w1[i], torque[i]);
-                first[i] = p.torque[0];
-                second[i] = p.torque[1];
-                loss[i] = p.loss;
-                efficiency[i] = p.efficiency;
-                usual &= p.usual;
-            }
-            for i in if usual { 0..0 } else { 0..n } {
-                let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
-                first[i] = p.torque[0];
-                second[i] = p.torque[1];
-                loss[i] = p.loss;
-                efficiency[i] = p.efficiency;
-            }
-        }
+        usual_first!(*set, [w0, w1, torque], [first, second, loss, efficiency], |i, p| {
+            first[i] = p.torque[0];
+            second[i] = p.torque[1];
+            loss[i] = p.loss;
+            efficiency[i] = p.efficiency;
+        });
     }
     /// Efficiency of a power split.
     SingleEfficiency<'a, const LOADED> {
         set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], out: &'a mut [f64],
     } -> () {
-        let n = out.len();
-        let (w0, w1, torque) = (&w0[..n], &w1[..n], &torque[..n]);
-        let set = *set;
-        for start in (0..n).step_by(BLOCK) {
-            let range = start..n.min(start + BLOCK);
-            let n = range.len();
-            let [w0, w1, torque] = [w0, w1, torque].map(|x| &x[range.clone()][..n]);
-            let out = &mut out[range][..n];
-            let mut usual = true;
-            for i in 0..n {
-                let p = set.usual::<LOADED>(w0[i], w1[i], torque[i]);
-                out[i] = p.efficiency;
-                usual &= p.usual;
-            }
-            for i in if usual { 0..0 } else { 0..n } {
-                out[i] = set.point::<LOADED>(w0[i], w1[i], torque[i]).efficiency;
-            }
-        }
+        usual_first!(*set, [w0, w1, torque], [out], |i, p| {
+            out[i] = p.efficiency;
+        });
     }
     /// One result of a power split: 0 and 1 the torques, 2 the loss.
     SingleOne<'a, const LOADED, const WHAT> {
