@@ -59,6 +59,8 @@ pub enum Tag {
     OwnLossFactor,
     /// A law of tooth friction that reads neither the oil nor its film; every other has no value without an oil.
     WithoutOil,
+    /// A law of tooth friction that reads the film or its ratio to the roughness; to all others they are zero.
+    Film,
 }
 
 impl Tag {
@@ -71,6 +73,7 @@ impl Tag {
             Self::Compatibility => "reproduces a published error",
             Self::OwnLossFactor => "with its own loss factor",
             Self::WithoutOil => "needs no oil",
+            Self::Film => "reads the film",
         }
     }
 }

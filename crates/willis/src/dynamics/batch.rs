@@ -16,6 +16,9 @@ use super::report::Outcome;
 /// Runs in a block.
 const LANES: usize = 8;
 
+/// Steps that a block takes before the next block takes as many: what it works on stays near.
+const STRETCH: u64 = 64;
+
 type Lanes = [f64; LANES];
 
 fn wrong(message: String) -> Diagnostics {
@@ -44,6 +47,15 @@ struct Block {
     bound: Lanes,
     turns: [u32; LANES],
     verdict: [Option<Outcome>; LANES],
+    /// Those, as bits.
+    ended: u8,
+}
+
+/// Room for inputs that are not level, and for the ends of a step.
+#[derive(Default)]
+struct Room {
+    entering: Vec<Lanes>,
+    ends: Vec<Lanes>,
 }
 
 /// Several runs of a scenario in steps of fixed length, which differ in initial speeds and in the size of torques.
@@ -84,14 +96,11 @@ pub struct Batch {
     blocks: Vec<Block>,
     len: usize,
     arch: pulp::Arch,
-    /// Room for the ends of a step.
-    ends: Vec<Lanes>,
-    /// Inputs that are not level, and their values where all runs have the same.
+    /// Inputs that are not level, step by step, where all runs have the same.
     common: Vec<Option<f64>>,
     /// Steps of modes as blocks take them, in the order of the modes met; empty until one does.
     packed: Vec<Vec<f64>>,
-    /// Room for what changes from step to step: speeds, and inputs that are not level.
-    terms: Vec<Lanes>,
+    room: Room,
     impacts: u64,
 }
 
@@ -119,15 +128,15 @@ impl Batch {
             bound: [0.0; LANES],
             turns: [0; LANES],
             verdict: Default::default(),
+            ended: 0,
         };
         Ok(Self {
             blocks: (0..runs.div_ceil(LANES)).map(|_| block()).collect(),
             len: runs,
             arch: pulp::Arch::new(),
-            ends: vec![],
             common: vec![],
             packed: vec![],
-            terms: vec![],
+            room: Room::default(),
             impacts: 0,
             one,
         })
@@ -231,75 +240,50 @@ impl Batch {
 
     /// Takes steps.
     pub fn run(&mut self, steps: u64) {
-        for _ in 0..steps {
-            self.step();
+        let mut left = steps;
+        while left > 0 {
+            left -= self.stretch(left.min(STRETCH));
         }
     }
 
-    fn step(&mut self) {
-        let middle = self.one.middle();
-        if self.one.is_over(middle) {
-            let ended = self.one.until;
-            self.one.refresh(middle);
-            self.one.count_jumps(ended, middle);
-            self.impacts += std::mem::take(&mut self.one.impacts) * self.len as u64;
+    /// Takes as many steps, or those up to where an input begins to change or ceases to; how many.
+    fn stretch(&mut self, most: u64) -> u64 {
+        let Self { one, blocks, common, .. } = self;
+        let first = one.count;
+        if one.is_over(one.middle()) {
+            let (ended, middle) = (one.until, one.middle());
+            one.refresh(middle);
+            one.count_jumps(ended, middle);
+            self.impacts += std::mem::take(&mut one.impacts) * self.len as u64;
             self.packed.iter_mut().for_each(Vec::clear);
-            for block in &mut self.blocks {
+            for block in blocks.iter_mut() {
                 block.present = [None; LANES];
                 block.uniform = true;
             }
         }
-        let one = &mut self.one;
-        self.common.clear();
-        for &k in &one.varying {
-            self.common.push((!one.depends_on_speed(k)).then(|| one.enters(k, middle)));
+        common.clear();
+        let mut steps = 0;
+        while steps < most && !(steps > 0 && one.is_over(one.middle())) {
+            let middle = one.middle();
+            common.extend(one.varying.iter().map(|&k| (!one.depends_on_speed(k)).then(|| one.enters(k, middle))));
+            one.count += 1;
+            steps += 1;
         }
-        let count = one.count;
-        for (b, block) in self.blocks.iter_mut().enumerate() {
-            let lanes = (self.len - b * LANES).min(LANES);
-            // Those in the same mode go together; those that leave it, alone.
-            let mut left = ((1u32 << lanes) - 1) as u8 & !block.ended();
-            let mut alone = 0;
-            while left != 0 {
-                let present = block.present[left.trailing_zeros() as usize];
-                let alike = if block.uniform { left } else { left & block.alike(present) };
-                // The torque of a shaft follows from its twist, which only a single run knows.
-                alone |= match present {
-                    Some(k) if !one.needs_itself() => {
-                        let at = k as usize;
-                        if self.packed.len() <= at {
-                            self.packed.resize(at + 1, vec![]);
-                        }
-                        if self.packed[at].is_empty() {
-                            one.fused[at].pack(one.v.len(), &one.varying, &mut self.packed[at]);
-                        }
-                        self.arch.dispatch(Glide {
-                            block,
-                            one,
-                            mode: k,
-                            alike,
-                            middle,
-                            common: &self.common,
-                            packed: &self.packed[at],
-                            terms: &mut self.terms,
-                            ends: &mut self.ends,
-                        })
-                    }
-                    _ => alike,
-                };
-                left &= !alike;
-            }
-            if alone == 0 {
-                continue;
-            }
-            for lane in (0..lanes).filter(|lane| alone >> lane & 1 == 1) {
-                block.step_alone(one, lane);
-                self.impacts += std::mem::take(&mut one.impacts);
-                one.count = count;
-            }
-            block.uniform = block.present[..lanes].iter().all(|p| *p == block.present[0]) && block.ended() == 0;
+        for (b, block) in blocks.iter_mut().enumerate() {
+            one.count = first;
+            self.arch.dispatch(Stretch {
+                block,
+                lanes: (self.len - b * LANES).min(LANES),
+                one,
+                steps,
+                common,
+                packed: &mut self.packed,
+                room: &mut self.room,
+                impacts: &mut self.impacts,
+            });
         }
-        one.count = count + 1;
+        one.count = first + steps;
+        steps
     }
 }
 
@@ -307,11 +291,6 @@ impl Block {
     fn forget(&mut self, lane: usize) {
         self.present[lane] = None;
         self.uniform = false;
-    }
-
-    /// Runs that cannot go on, as bits.
-    fn ended(&self) -> u8 {
-        self.verdict.iter().enumerate().map(|(lane, v)| u8::from(v.is_some()) << lane).sum()
     }
 
     /// Runs in a mode, as bits.
@@ -368,6 +347,20 @@ impl Block {
         }
     }
 
+    /// Takes the step of the runs of a mask one after the other; impacts met.
+    #[cold]
+    #[inline(never)]
+    fn step_each(&mut self, one: &mut FixedStep, mask: u8, lanes: usize) -> u64 {
+        let (count, mut impacts) = (one.count, 0);
+        for lane in (0..lanes).filter(|lane| mask >> lane & 1 == 1) {
+            self.step_alone(one, lane);
+            impacts += std::mem::take(&mut one.impacts);
+            one.count = count;
+        }
+        self.uniform = self.present[..lanes].iter().all(|p| *p == self.present[0]) && self.ended == 0;
+        impacts
+    }
+
     /// Takes the step of one run.
     fn step_alone(&mut self, one: &mut FixedStep, lane: usize) {
         copy_lane(&self.v, lane, &mut one.v);
@@ -393,6 +386,7 @@ impl Block {
         (one.bound, one.turns) = (self.bound[lane], self.turns[lane]);
         one.step();
         (self.bound[lane], self.turns[lane], self.verdict[lane]) = (one.bound, one.turns, one.verdict.take());
+        self.ended |= u8::from(self.verdict[lane].is_some()) << lane;
         paste_lane(&one.v, lane, &mut self.v);
         paste_lane(&one.rest, lane, &mut self.rest);
         paste_lane(&one.inputs, lane, &mut self.inputs);
@@ -431,78 +425,118 @@ fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
     }
 }
 
-/// The step of the runs of `alike` in the mode they share; gives those that do not go on in it, and have not moved.
-struct Glide<'a> {
+/// Some steps of a block.
+struct Stretch<'a> {
     block: &'a mut Block,
+    /// Runs in it.
+    lanes: usize,
     one: &'a mut FixedStep,
-    mode: u32,
-    alike: u8,
-    middle: f64,
+    steps: u64,
     common: &'a [Option<f64>],
-    packed: &'a [f64],
-    terms: &'a mut Vec<Lanes>,
-    ends: &'a mut Vec<Lanes>,
+    packed: &'a mut Vec<Vec<f64>>,
+    room: &'a mut Room,
+    impacts: &'a mut u64,
 }
 
-impl pulp::WithSimd for Glide<'_> {
-    type Output = u8;
+impl pulp::WithSimd for Stretch<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> u8 {
-        let Self { block, one, mode, alike, middle, common, packed, terms, ends } = self;
-        let (drivers, frictions) = {
-            let s = &one.engine.system;
-            (s.drivers.len(), s.frictions.len())
-        };
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        let Self { block, lanes, one, steps, common, packed, room, impacts } = self;
+        let all = ((1u32 << lanes) - 1) as u8;
+        // The torque of a shaft follows from its twist, which only a single run knows.
+        let needs_itself = one.needs_itself();
+        let varying = one.varying.len();
+        for step in 0..steps as usize {
+            let common = &common[step * varying..(step + 1) * varying];
+            // Those in the same mode go together; those that leave it, alone.
+            let mut left = all & !block.ended;
+            let mut alone = 0;
+            while left != 0 {
+                let present = block.present[left.trailing_zeros() as usize];
+                let alike = if block.uniform { left } else { left & block.alike(present) };
+                alone |= match present {
+                    Some(k) if !needs_itself => {
+                        let at = k as usize;
+                        if packed.get(at).is_none_or(Vec::is_empty) {
+                            packed.resize(packed.len().max(at + 1), vec![]);
+                            one.fused[at].pack(one.v.len(), &one.varying, &mut packed[at]);
+                        }
+                        block.glide(simd, one, at, alike, common, &packed[at], room)
+                    }
+                    _ => alike,
+                };
+                left &= !alike;
+            }
+            if alone != 0 {
+                *impacts += block.step_each(one, alone, lanes);
+            }
+            one.count += 1;
+        }
+    }
+}
+
+impl Block {
+    /// The step of the runs of `alike` in the mode they share; gives those that do not go on in it, and have not moved.
+    #[inline(always)]
+    fn glide<S: pulp::Simd>(
+        &mut self,
+        simd: S,
+        one: &mut FixedStep,
+        mode: usize,
+        alike: u8,
+        common: &[Option<f64>],
+        packed: &[f64],
+        room: &mut Room,
+    ) -> u8 {
+        let middle = one.middle();
+        let s = &one.engine.system;
+        let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
         let mut alone = 0;
-        terms.clear();
-        terms.extend_from_slice(&block.v);
+        let Room { entering, ends } = room;
+        entering.clear();
         for (at, common) in common.iter().enumerate() {
             let k = one.varying[at];
-            let mut u = block.factors[k];
+            let mut u = self.factors[k];
             match common {
                 Some(value) => u.iter_mut().for_each(|u| *u *= value),
                 None => {
-                    let own = block.inputs_at(one, k, middle);
+                    let own = self.inputs_at(one, k, middle);
                     u.iter_mut().zip(own).for_each(|(u, own)| *u *= own);
                 }
             }
             // What opens, closes or locks is more than a change of torque.
             if k >= drivers && k < drivers + frictions {
-                for (lane, (u, was)) in u.iter().zip(&block.inputs[k]).enumerate() {
-                    if (*u == 0.0) != (*was == 0.0) || (*u == UNBOUNDED) != (*was == UNBOUNDED) {
-                        alone |= 1 << lane;
-                    }
-                }
+                let was = &self.inputs[k];
+                let turns = |lane: usize, at: f64| (u[lane] == at) != (was[lane] == at);
+                alone |= mask(|lane| turns(lane, 0.0) | turns(lane, UNBOUNDED));
             }
-            write(&mut block.inputs[k], &u, alike);
-            terms.push(u);
+            write(&mut self.inputs[k], &u, alike);
+            entering.push(u);
         }
-        let fused = &one.fused[mode as usize];
-        if ends.len() < fused.rows {
-            ends.resize(fused.rows, [0.0; LANES]);
-        }
-        let rows = fused.rows;
-        alone |= product(simd, packed, terms, &block.base[..rows], &block.least[..rows], &mut ends[..rows]);
+        let fused = &one.fused[mode];
+        let (rows, free) = (fused.rows, fused.free);
+        ends.resize(free.next_multiple_of(BLOCK), [0.0; LANES]);
+        let settled = [&self.base[..rows], &self.least[..rows]];
+        alone |= product(simd, packed, [&self.v, entering], settled, ends, free);
         // As a single run looks at its growth; what is no number counts as grown.
         let mut square = [0.0; LANES];
         let mut add = |of: &Lanes| (0..LANES).for_each(|lane| square[lane] += of[lane] * of[lane]);
-        ends[..fused.free].iter().for_each(&mut add);
+        ends[..free].iter().for_each(&mut add);
         let s = &one.engine.system;
-        for (_, u) in s.drivers.iter().zip(&block.inputs).filter(|(driver, _)| driver.prescribed.is_some()) {
-            add(u);
+        if s.prescribed > 0 {
+            let prescribed = s.drivers.iter().zip(&self.inputs).filter(|(driver, _)| driver.prescribed.is_some());
+            prescribed.for_each(|(_, u)| add(u));
         }
-        for (lane, (square, bound)) in square.iter().zip(&block.bound).enumerate() {
-            alone |= u8::from(*square > *bound || square.is_nan()) << lane;
-        }
+        alone |= mask(|lane| (square[lane] > self.bound[lane]) | square[lane].is_nan());
         alone &= alike;
         let going = alike & !alone;
-        let free = fused.free;
-        block.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
+        self.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
         if s.prescribed > 0 {
-            for (driver, u) in s.drivers.iter().zip(&block.inputs) {
+            for (driver, u) in s.drivers.iter().zip(&self.inputs) {
                 if let Some(i) = driver.prescribed {
-                    write(&mut block.v[free + i], u, going);
+                    write(&mut self.v[free + i], u, going);
                 }
             }
         }
@@ -510,10 +544,10 @@ impl pulp::WithSimd for Glide<'_> {
             for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
                 if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
                     let set = setpoint.value(middle, middle, &|_| 0.0);
-                    let w = block.followed(&s.speeds[driver.member.index()]);
-                    let mut sum = block.rest[s.all() + i];
+                    let w = self.followed(&s.speeds[driver.member.index()]);
+                    let mut sum = self.rest[s.all() + i];
                     sum.iter_mut().zip(w).for_each(|(sum, w)| *sum += one.h * (set - w));
-                    write(&mut block.rest[s.all() + i], &sum, going);
+                    write(&mut self.rest[s.all() + i], &sum, going);
                 }
             }
         }
@@ -521,38 +555,56 @@ impl pulp::WithSimd for Glide<'_> {
     }
 }
 
-/// The product of a fused step with the states of a block, and which runs break a margin.
+/// Runs of which that is so, as bits.
+#[inline(always)]
+fn mask(is_so: impl Fn(usize) -> bool) -> u8 {
+    // Of none of them, nearly always.
+    if !(0..LANES).fold(false, |any, lane| any | is_so(lane)) {
+        return 0;
+    }
+    (0..LANES).map(|lane| u8::from(is_so(lane)) << lane).sum()
+}
+
+/// The product of a fused step with speeds and inputs of a block, and which runs break a margin. Kept are the speeds it
+/// ends with, as many as are free.
 #[inline(always)]
 fn product<S: pulp::Simd>(
     simd: S,
     packed: &[f64],
-    terms: &[Lanes],
-    base: &[Lanes],
-    least: &[Lanes],
+    [v, entering]: [&[Lanes]; 2],
+    [base, least]: [&[Lanes]; 2],
     ends: &mut [Lanes],
+    free: usize,
 ) -> u8 {
+    let terms = v.len() + entering.len();
     let mut least_margins = [f64::INFINITY; LANES];
     let (worst, _) = S::as_mut_simd_f64s(&mut least_margins);
     for (part, worst) in worst.iter_mut().enumerate() {
         let of = |x: &Lanes| S::as_simd_f64s(x).0[part];
         let mut margin = *worst;
-        let rows = base.chunks_exact(BLOCK).zip(least.chunks_exact(BLOCK)).zip(ends.chunks_exact_mut(BLOCK));
-        for (((base, least), ends), weights) in rows.zip(packed.chunks_exact(BLOCK * terms.len())) {
+        let rows = base.as_chunks::<BLOCK>().0.iter().zip(least.as_chunks::<BLOCK>().0);
+        for (at, ((base, least), weights)) in rows.zip(packed.chunks_exact(BLOCK * terms)).enumerate() {
             // A row waits for each of its additions, so that several are under way at once.
-            let [mut a, mut b, mut c, mut d] = [of(&base[0]), of(&base[1]), of(&base[2]), of(&base[3])];
-            for (w, x) in weights.chunks_exact(BLOCK).zip(terms) {
+            let mut sums = [0, 1, 2, 3].map(|k| of(&base[k]));
+            let mut add = |(w, x): (&[f64; BLOCK], &Lanes)| {
                 let x = of(x);
-                a = simd.add_f64s(a, simd.mul_f64s(simd.splat_f64s(w[0]), x));
-                b = simd.add_f64s(b, simd.mul_f64s(simd.splat_f64s(w[1]), x));
-                c = simd.add_f64s(c, simd.mul_f64s(simd.splat_f64s(w[2]), x));
-                d = simd.add_f64s(d, simd.mul_f64s(simd.splat_f64s(w[3]), x));
+                for k in 0..BLOCK {
+                    sums[k] = simd.add_f64s(sums[k], simd.mul_f64s(simd.splat_f64s(w[k]), x));
+                }
+            };
+            let (of_speeds, of_inputs) = weights.as_chunks().0.split_at(v.len());
+            of_speeds.iter().zip(v).for_each(&mut add);
+            of_inputs.iter().zip(entering).for_each(&mut add);
+            for k in 0..BLOCK {
+                margin = simd.min_f64s(margin, simd.sub_f64s(sums[k], of(&least[k])));
             }
-            for (k, sum) in [a, b, c, d].into_iter().enumerate() {
-                margin = simd.min_f64s(margin, simd.sub_f64s(sum, of(&least[k])));
-                S::as_mut_simd_f64s(&mut ends[k]).0[part] = sum;
+            if at * BLOCK < free {
+                for k in 0..BLOCK {
+                    S::as_mut_simd_f64s(&mut ends[at * BLOCK + k]).0[part] = sums[k];
+                }
             }
         }
         *worst = margin;
     }
-    least_margins.iter().enumerate().map(|(lane, margin)| u8::from(*margin < 0.0) << lane).sum()
+    mask(|lane| least_margins[lane] < 0.0)
 }

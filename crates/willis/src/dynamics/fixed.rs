@@ -522,12 +522,6 @@ impl FixedStep {
         ((self.engine.system.scenario.end - self.start) / self.h - 1e-9).ceil() as u64
     }
 
-    /// Takes steps; none after a [verdict](Self::verdict).
-    pub fn run(&mut self, steps: u64) {
-        for _ in 0..steps {
-            self.step();
-        }
-    }
 }
 
 /// Whether a prescribed speed that goes from one value to another at once jumps.

@@ -24,8 +24,10 @@ pub(super) struct Fused {
     /// The end of the margins.
     checked: usize,
     pub mode: Exactly,
-    /// Columns of the speeds before the step, then of the inputs.
-    columns: Vec<f64>,
+    /// Speeds before the step, then inputs.
+    width: usize,
+    /// By blocks of rows, the part of each column in one piece.
+    weights: Vec<f64>,
 }
 
 /// What tells a mode from others: by group whether it is held, slides forward, or has nothing to hold it; by element
@@ -203,29 +205,57 @@ impl Fused {
         }
         let checked = rows.len();
         rows.resize(checked.next_multiple_of(BLOCK), vec![0.0; width]);
-        let columns = (0..width).flat_map(|c| rows.iter().map(move |row| row[c])).collect();
-        Self { rows: rows.len(), free, checked, mode: *mode, columns }
+        let of_block = |block: &[Vec<f64>]| (0..width).flat_map(|c| block.iter().map(move |row| row[c])).collect::<Vec<_>>();
+        let weights = rows.chunks_exact(BLOCK).flat_map(of_block).collect();
+        Self { rows: rows.len(), free, checked, mode: *mode, width, weights }
     }
 
     /// How many numbers it is made of.
     pub fn size(&self) -> usize {
-        self.columns.len()
+        self.weights.len()
     }
 
-    /// Column of a speed, or of an input behind them.
-    #[inline]
-    pub fn column(&self, k: usize) -> &[f64] {
-        &self.columns[k * self.rows..(k + 1) * self.rows]
+    /// By block of rows: the weights of each column, the speeds first.
+    #[inline(always)]
+    fn blocks(&self) -> impl Iterator<Item = &[[f64; BLOCK]]> {
+        self.weights.chunks_exact(BLOCK * self.width).map(|block| block.as_chunks().0)
     }
 
     /// The columns of speeds and of inputs that are not level, each block of rows in one piece.
     pub fn pack(&self, speeds: usize, varying: &[usize], packed: &mut Vec<f64>) {
         packed.clear();
-        for row in (0..self.rows).step_by(BLOCK) {
-            for k in (0..speeds).chain(varying.iter().map(|k| speeds + k)) {
-                packed.extend_from_slice(&self.column(k)[row..row + BLOCK]);
-            }
+        for block in self.blocks() {
+            let columns = (0..speeds).chain(varying.iter().map(|k| speeds + k));
+            packed.extend(columns.flat_map(|k| block[k]));
         }
+    }
+
+    /// Where the step ends, and whether every margin is at least as large as `least` says; what is no number breaks too.
+    ///
+    /// A block of rows is summed up in registers: first its part of level inputs, then speeds and inputs that are not level.
+    #[inline(always)]
+    pub fn ends(
+        &self,
+        [v, inputs]: [&[f64]; 2],
+        varying: &[usize],
+        [base, least]: [&[f64]; 2],
+        ends: &mut [f64],
+    ) -> bool {
+        let rows = base.as_chunks().0.iter().zip(least.as_chunks().0).zip(ends.as_chunks_mut().0);
+        let mut holds = [true; BLOCK];
+        for (((base, least), end), block) in rows.zip(self.blocks()) {
+            let (of_speeds, of_inputs) = block.split_at(v.len());
+            let mut sum: [f64; BLOCK] = *base;
+            let mut add = |weights: &[f64; BLOCK], x: f64| {
+                (0..BLOCK).for_each(|k| sum[k] += weights[k] * x);
+            };
+            of_speeds.iter().zip(v).for_each(|(weights, x)| add(weights, *x));
+            varying.iter().for_each(|&k| add(&of_inputs[k], inputs[k]));
+            let least: &[f64; BLOCK] = least;
+            (0..BLOCK).for_each(|k| holds[k] &= sum[k] >= least[k]);
+            *end = sum;
+        }
+        holds == [true; BLOCK]
     }
 
     /// The part of level inputs, and for each row how negative it may be from round-off.
@@ -236,11 +266,15 @@ impl Fused {
         least.resize(self.rows, 0.0);
         for (k, x) in v.iter().chain(inputs).enumerate().filter(|(_, x)| **x != 0.0) {
             let is_level = k >= v.len() && !varying.contains(&(k - v.len()));
-            for ((b, l), w) in base.iter_mut().zip(least.iter_mut()).zip(self.column(k)) {
-                let part = w * x;
-                *l -= NOISE * part.abs();
-                if is_level {
-                    *b += part;
+            let rows = base.as_chunks_mut().0.iter_mut().zip(least.as_chunks_mut().0).zip(self.blocks());
+            for ((base, least), block) in rows {
+                let (base, least): (&mut [f64; BLOCK], &mut [f64; BLOCK]) = (base, least);
+                for ((b, l), w) in base.iter_mut().zip(least).zip(block[k]) {
+                    let part = w * x;
+                    *l -= NOISE * part.abs();
+                    if is_level {
+                        *b += part;
+                    }
                 }
             }
         }
@@ -256,19 +290,14 @@ impl Fused {
     /// room for the ends of the step.
     pub fn holds_by_far(
         &self,
-        [v, inputs]: [&[f64]; 2],
+        of: [&[f64]; 2],
         varying: &[usize],
-        [base, least]: [&[f64]; 2],
+        settled: [&[f64]; 2],
         ends: &mut Vec<f64>,
     ) -> bool {
-        ends.clear();
-        ends.extend_from_slice(base);
-        for (k, v) in v.iter().enumerate() {
-            add_column(ends, self.column(k), *v);
-        }
-        for &k in varying {
-            add_column(ends, self.column(v.len() + k), inputs[k]);
-        }
+        ends.resize(self.rows, 0.0);
+        self.ends(of, varying, settled, ends);
+        let least = settled[1];
         let margins = self.free..self.checked;
         ends[margins.clone()]
             .iter()
@@ -279,14 +308,4 @@ impl Fused {
 
 fn scale(x: &mut [f64], factor: f64) {
     x.iter_mut().for_each(|x| *x *= factor);
-}
-
-/// Adds a multiple of a column.
-#[inline]
-pub(super) fn add_column(sum: &mut [f64], column: &[f64], x: f64) {
-    for (sum, c) in sum.chunks_exact_mut(BLOCK).zip(column.chunks_exact(BLOCK)) {
-        for k in 0..BLOCK {
-            sum[k] += c[k] * x;
-        }
-    }
 }

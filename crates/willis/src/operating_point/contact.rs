@@ -142,7 +142,6 @@ struct Point<R> {
     sum: R,
     radius: R,
     pressure: R,
-    film: R,
 }
 
 /// One place of the path of contact of one pair in parallel, as the laws see it.
@@ -268,13 +267,17 @@ impl<R: Real> Loaded<'_, R> {
         let radius = place.radius;
         let [profile, sum] = [place.sliding, place.sum].map(|per_speed| per_speed * self.speed);
         let sliding = self.along.map_or(profile, |along| root(profile * profile + along * along));
-        let none = R::from(0.0);
-        let film = self
-            .physics
-            .oil
-            .as_ref()
-            .map_or(none, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
-        Point { line_load, sliding, profile, sum, radius, pressure, film }
+        Point { line_load, sliding, profile, sum, radius, pressure }
+    }
+
+    /// The film there, m; zero without a load, a speed or an oil.
+    fn film(&self, p: &Point<R>) -> R {
+        let Some((_, oil)) = &self.physics.oil else { return R::from(0.0) };
+        if p.line_load.re() <= 0.0 || p.sum.re() <= 0.0 {
+            return R::from(0.0);
+        }
+        let laws = &self.physics.train.laws;
+        laws.film.eval(&self.film_contact(oil, p)) * laws.film_reduction.eval(&self.inlet(oil, p))
     }
 
     /// The loss factor under this load.
@@ -290,7 +293,8 @@ impl<R: Real> Loaded<'_, R> {
         PathOfContact { relief: self.relief, ..PathOfContact::of(&self.teeth.pair) }
     }
 
-    fn inlet(&self, oil: &OilState<R>, sliding: R, sum: R, pressure: R) -> Inlet<R> {
+    fn inlet(&self, oil: &OilState<R>, p: &Point<R>) -> Inlet<R> {
+        let Point { sliding, sum, pressure, .. } = *p;
         Inlet {
             dynamic_viscosity: oil.dynamic_viscosity,
             viscosity_slope: oil.viscosity_slope,
@@ -312,29 +316,19 @@ impl<R: Real> Loaded<'_, R> {
             dynamic_viscosity: oil.dynamic_viscosity,
             pressure_viscosity: oil.pressure_viscosity,
             reduced_modulus: self.teeth.reduced_modulus(),
-            film_reduction: (self.physics.train.laws.film_reduction)
-                .eval(&self.inlet(oil, p.sliding, p.sum, p.pressure)),
+            film_reduction: self.physics.train.laws.film_reduction.eval(&self.inlet(oil, p)),
         }
     }
 
-    fn film_contact(&self, oil: &OilState<R>, line_load: R, radius: R, sum: R) -> FilmContact<R> {
+    fn film_contact(&self, oil: &OilState<R>, p: &Point<R>) -> FilmContact<R> {
         FilmContact {
-            radius,
-            mean_speed: sum / 2.0,
-            line_load,
+            radius: p.radius,
+            mean_speed: p.sum / 2.0,
+            line_load: p.line_load,
             dynamic_viscosity: oil.dynamic_viscosity,
             pressure_viscosity: oil.pressure_viscosity,
             reduced_modulus: self.teeth.reduced_modulus(),
         }
-    }
-
-    fn film(&self, oil: &OilState<R>, line_load: R, radius: R, sliding: R, sum: R, pressure: R) -> R {
-        if line_load.re() <= 0.0 || sum.re() <= 0.0 {
-            return R::from(0.0);
-        }
-        let laws = &self.physics.train.laws;
-        let h = laws.film.eval(&self.film_contact(oil, line_load, radius, sum));
-        h * laws.film_reduction.eval(&self.inlet(oil, sliding, sum, pressure))
     }
 }
 
@@ -460,14 +454,18 @@ impl<R: Real> Physics<'_, R> {
         if !loaded.works() || !mesh.computed {
             return tooth;
         }
-        let pitch = self.state(mesh, &loaded, &loaded.at(&fixed.pitch), loss_factor);
+        // Most laws read no film, which costs more than all else at a point.
+        let reads_film = self.friction.meta().tags.contains(&Tag::Film);
+        let film = |p: &Point<R>| if reads_film { loaded.film(p) } else { none };
+        let p = loaded.at(&fixed.pitch);
+        let pitch = self.state(mesh, &loaded, loss_factor).at(&p, film(&p));
         let mu = if self.friction.meta().tags.contains(&Tag::Local) {
             let (mut friction, mut weight) = (none, none);
             for (place, w) in &fixed.friction {
                 let p = loaded.at(place);
                 let own = *w * p.line_load * p.sliding;
                 weight += own;
-                friction += own * self.coefficient(&pitch.at(&p));
+                friction += own * self.coefficient(&pitch.at(&p, film(&p)));
             }
             if weight.re() > 0.0 { friction / weight } else { none }
         } else {
@@ -495,7 +493,8 @@ impl<R: Real> Physics<'_, R> {
         }
     }
 
-    fn state(&self, mesh: &Mesh, loaded: &Loaded<'_, R>, p: &Point<R>, loss_factor: R) -> MeshContact<R> {
+    /// What is the same all along the path; the rest is zero.
+    fn state(&self, mesh: &Mesh, loaded: &Loaded<'_, R>, loss_factor: R) -> MeshContact<R> {
         let Loaded { teeth, fixed, base_force, normal_force, pitch_line_speed, .. } = *loaded;
         let pair = &teeth.pair;
         // The smaller wheel first.
@@ -542,13 +541,12 @@ impl<R: Real> Physics<'_, R> {
             loss_factor,
             parallel: f64::from(mesh.count),
         }
-        .at(p)
     }
 }
 
 impl<R: Real> MeshContact<R> {
-    /// The same at another point of the path.
-    fn at(self, p: &Point<R>) -> Self {
+    /// The same at a point of the path, with the film there.
+    fn at(self, p: &Point<R>, film: R) -> Self {
         let rough = self.composite_roughness;
         Self {
             local_line_load: p.line_load,
@@ -556,8 +554,8 @@ impl<R: Real> MeshContact<R> {
             sum_speed: p.sum,
             radius: p.radius,
             hertz_pressure: p.pressure,
-            film: p.film,
-            film_ratio: if rough.re() > 0.0 { p.film / rough } else { R::from(f64::INFINITY) },
+            film,
+            film_ratio: if rough.re() > 0.0 { film / rough } else { R::from(f64::INFINITY) },
             ..self
         }
     }
@@ -576,25 +574,27 @@ impl Physics<'_> {
         let local = self.friction.meta().tags.contains(&Tag::Local);
         let mean = self.tooth(mesh, teeth, flow).friction;
         let composite = composite(teeth);
+        let state = self.state(mesh, &loaded, loss_factor);
         let station = |s: f64| {
             let p = loaded.point(s);
             let friction = match (mesh.computed, local) {
                 (false, _) => None,
                 (true, false) => mean,
                 // Where nothing slides or presses a law may have no value; nothing is lost there.
-                (true, true) => Some(self.coefficient(&self.state(mesh, &loaded, &p, loss_factor))),
+                (true, true) => Some(self.coefficient(&state.at(&p, loaded.film(&p)))),
             };
             let friction = friction.filter(|mu| mu.is_finite());
             // Normal force of the pair here: line load times the length of its lines of contact.
             let force = p.line_load * pair.total_width() / pair.base_helix.cos();
-            let Point { pressure, film, .. } = hardest.point(s);
+            let hard = hardest.point(s);
+            let film = hardest.film(&hard);
             let film = (self.oil.is_some() && film > 0.0 && film.is_finite()).then_some(film);
             Station {
                 s,
                 line_load: p.line_load,
                 sliding: p.sliding,
                 sum: p.sum,
-                pressure,
+                pressure: hard.pressure,
                 film,
                 film_ratio: film.filter(|_| composite > 0.0).map(|h| h / composite),
                 friction,
@@ -637,14 +637,15 @@ impl Physics<'_> {
         let hard = hardest.at(&fixed.pitch);
 
         // Extremes: at the ends of each part of the path, just inside.
-        let mut worst = Point { film: f64::INFINITY, ..hard };
+        let hard_film = hardest.film(&hard);
+        let (mut worst, mut worst_film) = (hard, f64::INFINITY);
         for place in &fixed.ends {
             let p = hardest.at(place);
             worst.pressure = worst.pressure.max(p.pressure);
             worst.sliding = worst.sliding.max(p.sliding);
-            worst.film = worst.film.min(p.film);
+            worst_film = worst_film.min(hardest.film(&p));
         }
-        let film = self.oil.is_some().then_some(if worst.film.is_finite() { worst.film } else { hard.film });
+        let film = self.oil.is_some().then_some(if worst_film.is_finite() { worst_film } else { hard_film });
         let composite = composite(teeth);
         let film_ratio = film.filter(|_| composite > 0.0 && loaded.base_force > 0.0).map(|h| h / composite);
 
@@ -662,7 +663,7 @@ impl Physics<'_> {
             sliding_speed_m_s: worst.sliding,
             pitch_pressure_pa: hard.pressure,
             pressure_pa: worst.pressure,
-            pitch_film_m: film.map(|_| hard.film),
+            pitch_film_m: film.map(|_| hard_film),
             film_m: film,
             film_ratio,
             regime: film_ratio.map(LubricationRegime::of),
@@ -710,13 +711,12 @@ impl Physics<'_> {
         }
         let pitch = loaded.at(&fixed.pitch);
         if let Some((_, oil)) = &self.oil {
-            let contact = loaded.film_contact(oil, pitch.line_load, pitch.radius, pitch.sum);
-            note("film", laws.film.meta().id, laws.film.outside(&contact));
-            let inlet = loaded.inlet(oil, pitch.sliding, pitch.sum, pitch.pressure);
-            note("film_reduction", laws.film_reduction.meta().id, laws.film_reduction.outside(&inlet));
+            note("film", laws.film.meta().id, laws.film.outside(&loaded.film_contact(oil, &pitch)));
+            let reduction = laws.film_reduction;
+            note("film_reduction", reduction.meta().id, reduction.outside(&loaded.inlet(oil, &pitch)));
         }
-        let loss_factor = loaded.loss_factor(fixed);
-        let state = |p: &Point<f64>| self.state(mesh, &loaded, p, loss_factor);
+        let anywhere = self.state(mesh, &loaded, loaded.loss_factor(fixed));
+        let state = |p: &Point<f64>| anywhere.at(p, loaded.film(p));
         let outside = match self.friction.meta().tags.contains(&Tag::Local) {
             false => self.friction.outside(&state(&pitch)),
             // Away from the pitch point, where it slides.

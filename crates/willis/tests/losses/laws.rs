@@ -417,6 +417,18 @@ fn laws_say_truly_whether_they_need_an_oil() {
     }
 }
 
+/// With another film alone a law that says it reads it gives another value, and every other the same; its ranges too.
+#[test]
+fn laws_say_truly_whether_they_read_the_film() {
+    let typical = MeshContact::typical();
+    for law in MeshFriction::ALL {
+        let at = |film: f64, film_ratio: f64| MeshContact { film, film_ratio, ..typical };
+        let says = |s: &MeshContact<f64>| (law.eval(s), law.outside(s));
+        let reads = [at(1.1 * typical.film, 2.0), at(0.0, 0.0)].iter().any(|other| says(other) != says(&typical));
+        assert_eq!(reads, law.meta().tags.contains(&Tag::Film), "{}", law.meta().id);
+    }
+}
+
 fn close(ours: f64, theirs: f64, relative: f64, what: &str) {
     assert!((ours - theirs).abs() <= relative * theirs.abs(), "{what}: {ours} against {theirs}");
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::dynamics::fused::{Exactly, Fused, add_column};
+use crate::dynamics::fused::{Exactly, Fused};
 use crate::dynamics::mode::{Side, dot};
 use crate::train::{MemberId, SourceKind};
 
@@ -11,6 +11,11 @@ use super::groups::UNBOUNDED;
 use super::shafts::word;
 
 impl FixedStep {
+    /// Takes steps; none after a [verdict](Self::verdict).
+    pub fn run(&mut self, steps: u64) {
+        self.arch.dispatch(Steps { of: self, steps });
+    }
+
     /// The mode in every detail.
     pub(super) fn exactly(&self) -> Exactly {
         let mut key = Exactly::default();
@@ -64,15 +69,9 @@ impl FixedStep {
     }
 
     /// Takes the step in the mode of the last one; false, and nothing done, if that does not go on.
-    #[inline]
+    #[inline(always)]
     fn glide(&mut self, middle: f64) -> bool {
         let Some(k) = self.present else { return false };
-        let fused = &self.fused[k as usize];
-        let all = self.v.len();
-        self.ends.copy_from_slice(&self.base);
-        for (k, v) in self.v.iter().enumerate() {
-            add_column(&mut self.ends, fused.column(k), *v);
-        }
         let s = &self.engine.system;
         let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
         for &k in &self.varying {
@@ -84,15 +83,14 @@ impl FixedStep {
                     return false;
                 }
             }
-            add_column(&mut self.ends, fused.column(all + k), u);
             self.inputs[k] = u;
         }
-        // What is no number breaks too.
-        let holds = self.ends.iter().zip(&self.least).fold(true, |holds, (end, least)| holds & (end >= least));
-        if !holds {
+        let fused = &self.fused[k as usize];
+        let settled = [&self.base[..], &self.least];
+        if !fused.ends([&self.v, &self.inputs], &self.varying, settled, &mut self.ends) {
             return false;
         }
-        self.next[..s.free].copy_from_slice(&self.ends[..s.free]);
+        self.next[..s.free].iter_mut().zip(&self.ends).for_each(|(next, end)| *next = *end);
         if s.prescribed > 0 {
             for (driver, u) in s.drivers.iter().zip(&self.inputs) {
                 if let Some(i) = driver.prescribed {
@@ -114,7 +112,7 @@ impl FixedStep {
     }
 
     /// Whether the speeds at the end of the step may be those of a motion.
-    #[inline]
+    #[inline(always)]
     fn stays_bounded(&mut self) -> bool {
         let square = dot(&self.next, &self.next);
         square <= self.bound || self.may_grow(square)
@@ -156,6 +154,11 @@ impl FixedStep {
 
     /// Takes one step; none after a [verdict](Self::verdict).
     pub fn step(&mut self) {
+        self.run(1);
+    }
+
+    #[inline(always)]
+    fn take_step(&mut self) {
         if self.verdict.is_some() {
             return;
         }
@@ -194,5 +197,21 @@ impl FixedStep {
         }
         std::mem::swap(&mut self.v, &mut self.next);
         self.count += 1;
+    }
+}
+
+struct Steps<'a> {
+    of: &'a mut FixedStep,
+    steps: u64,
+}
+
+impl pulp::WithSimd for Steps<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for _ in 0..self.steps {
+            self.of.take_step();
+        }
     }
 }

@@ -58,7 +58,7 @@ impl Law for CoulombByRegime {
         title: "Boundary, mixed or full film by film ratio",
         source: ("wang2020", "section 3.2.1, limits of the regimes of lubrication"),
         trust: Trust::Confirm("both coefficients"),
-        tags: &[Tag::Local, Tag::SlidingOnly],
+        tags: &[Tag::Local, Tag::SlidingOnly, Tag::Film],
         valid: &[],
     };
 

@@ -58,7 +58,7 @@ impl Law for Matsumoto {
         title: "Matsumoto, mixed lubrication",
         source: ("matsumoto2014", "share of the asperities, as printed in Arana 2019, Table 1 and Eq. (5)"),
         trust: Trust::Seen,
-        tags: &[Tag::Local, Tag::SlidingOnly],
+        tags: &[Tag::Local, Tag::SlidingOnly, Tag::Film],
         valid: &[ValidityRange { symbol: "D", unit: "-", min: 1.0, max: 100.0, get: |s| s.peak_roughness / s.film }],
     };
 
