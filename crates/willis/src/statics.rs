@@ -25,7 +25,8 @@ mod problem;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::allocator::Allocator;
+use nalgebra::{Const, DMatrix, DVector, DefaultAllocator, Dim, Dyn, OMatrix, OVector};
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
@@ -327,8 +328,15 @@ impl Equilibrium {
     }
 
     fn float_matrix(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
-        let n = self.columns.len();
-        let mut m = DMatrix::zeros(n, n);
+        self.float_matrix_in(Dyn(self.columns.len()), rho)
+    }
+
+    /// The same of a size that may be known beforehand: it is kept where it is made then.
+    fn float_matrix_in<D: Dim>(&self, n: D, rho: &dyn Fn(usize) -> f64) -> OMatrix<f64, D, D>
+    where
+        DefaultAllocator: Allocator<D, D>,
+    {
+        let mut m = OMatrix::zeros_generic(n, n);
         for (j, column) in self.columns.iter().enumerate() {
             let rho = rho(j);
             for &(r, constant, slope) in &column.floats {
@@ -340,9 +348,11 @@ impl Equilibrium {
 
     /// The sizes of the terms that the entries of that matrix are sums of: what rounding is measured by. Where a basic ratio
     /// is near one the terms of a carrier nearly cancel, and an entry may be all round-off.
-    fn sizes(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
-        let n = self.columns.len();
-        let mut m = DMatrix::zeros(n, n);
+    fn sizes<D: Dim>(&self, n: D, rho: &dyn Fn(usize) -> f64) -> OMatrix<f64, D, D>
+    where
+        DefaultAllocator: Allocator<D, D>,
+    {
+        let mut m = OMatrix::zeros_generic(n, n);
         for (j, column) in self.columns.iter().enumerate() {
             let rho = rho(j);
             for &(r, constant, slope) in &column.floats {
@@ -362,7 +372,7 @@ impl Equilibrium {
         let b = self.float_matrix(&|j| centre[j]);
         let Some(r) = b.clone().try_inverse() else { return false };
         let product = &r * &b;
-        let bound = r.abs() * self.sizes(&|j| centre[j]);
+        let bound = r.abs() * self.sizes(Dyn(n), &|j| centre[j]);
         let mut m = DMatrix::from_fn(n, n, |i, j| {
             let unit = if i == j { 1.0 } else { 0.0 };
             (unit - product[(i, j)]).abs() + 4.0 * (n as f64) * f64::EPSILON * bound[(i, j)]
@@ -562,9 +572,10 @@ impl Equilibrium {
             let forces: Vec<f64> = f.iter().map(Rational::to_f64).collect();
             Some(Trial { bounds: rounding(&forces), forces, signs, exact: Some(f) })
         };
-        let sizes = self.sizes(&rho);
+        let sizes = self.sizes(Dyn(self.columns.len()), &rho);
         let Some((forces, bounds)) = certain(&b, &sizes, &DVector::from_column_slice(t_float)) else { return exact() };
         let signs = forces.iter().map(|x| if *x > 0.0 { 1 } else { -1 }).collect();
+        let [forces, bounds] = [forces, bounds].map(|x| x.as_slice().to_vec());
         Some(Trial { forces, bounds, signs, exact: None })
     }
 
@@ -595,7 +606,14 @@ impl Equilibrium {
 
 /// Solves `b f = t` where rounding leaves no doubt about any sign: the forces, and how far each may be from the exact one.
 /// `sizes` are those of the terms that the entries of `b` are sums of.
-fn certain(b: &DMatrix<f64>, sizes: &DMatrix<f64>, t: &DVector<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
+fn certain<D: Dim>(
+    b: &OMatrix<f64, D, D>,
+    sizes: &OMatrix<f64, D, D>,
+    t: &OVector<f64, D>,
+) -> Option<(OVector<f64, D>, OVector<f64, D>)>
+where
+    DefaultAllocator: Allocator<D, D> + Allocator<D>,
+{
     let n = t.len();
     let inverse = b.clone().try_inverse()?;
     let mut f = &inverse * t;
@@ -604,13 +622,13 @@ fn certain(b: &DMatrix<f64>, sizes: &DMatrix<f64>, t: &DVector<f64>) -> Option<(
     // entries of B included.
     let unit = 4.0 * (n as f64 + 2.0) * f64::EPSILON;
     let residual = (t - b * &f).abs() + (sizes * f.abs() + t.abs()) * unit;
-    let off = (DMatrix::identity(n, n) - &inverse * b).abs() + inverse.abs() * sizes * unit;
+    let off = (OMatrix::identity_generic(b.shape_generic().0, b.shape_generic().1) - &inverse * b).abs() + inverse.abs() * sizes * unit;
     let defect = off.column_sum().max() + 1e-12;
     let v = inverse.abs() * residual;
     let bound = v.add_scalar(v.max() * defect / (1.0 - defect).max(1e-300)) * (1.0 + 1e-9);
     // NaN fails both comparisons.
     let certain = defect < 0.1 && (0..n).all(|j| f[j].abs() > bound[j]);
-    certain.then(|| (f.iter().copied().collect(), bound.iter().copied().collect()))
+    certain.then_some((f, bound))
 }
 
 /// What one unit of force in an element asks of a node, with ρ as given.
@@ -835,14 +853,33 @@ impl Equilibrium {
     ) -> bool {
         let bounds: Vec<[f64; 2]> = rho.iter().map(|[p, q]| [p.min(*q), p.max(*q)]).collect();
         let own = |j: usize| rho[j][usize::from(columns[j].p_drives == Some(false))];
-        let forces = || certain(&self.float_matrix(&own), &self.sizes(&own), &DVector::from_column_slice(torques));
-        let as_taken = |forces: &[f64]| {
-            (0..forces.len()).all(|j| {
-                let drives = forces[j] * f64::from(self.columns[j].sigma);
-                rho[j][0] == rho[j][1] || columns[j].p_drives == Some(drives > 0.0)
-            })
+        let as_taken = |j: usize, force: f64| {
+            let drives = force * f64::from(self.columns[j].sigma);
+            rho[j][0] == rho[j][1] || columns[j].p_drives == Some(drives > 0.0)
         };
-        self.regular_within(&bounds, regular) && forces().is_some_and(|(forces, _)| as_taken(&forces))
+        self.regular_within(&bounds, regular)
+            && match self.columns.len() {
+                // The meshes of one set, and of two: they are many points of a study.
+                2 => self.are_certain(Const::<2>, &own, torques, as_taken),
+                4 => self.are_certain(Const::<4>, &own, torques, as_taken),
+                n => self.are_certain(Dyn(n), &own, torques, as_taken),
+            }
+    }
+
+    /// Whether the forces with these ρ are certain, each of them as is asked.
+    fn are_certain<D: Dim>(
+        &self,
+        n: D,
+        rho: &dyn Fn(usize) -> f64,
+        torques: &[f64],
+        asked: impl Fn(usize, f64) -> bool,
+    ) -> bool
+    where
+        DefaultAllocator: Allocator<D, D> + Allocator<D>,
+    {
+        let torques = OVector::from_column_slice_generic(n, Const::<1>, torques);
+        certain(&self.float_matrix_in(n, rho), &self.sizes(n, rho), &torques)
+            .is_some_and(|(forces, _)| forces.iter().enumerate().all(|(j, force)| asked(j, *force)))
     }
 
     pub(crate) fn system(&self) -> System {

@@ -1,8 +1,10 @@
 //! Laws that were used outside their ranges.
 
-use std::fmt;
+use std::fmt::{self, Write as _};
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 
 use crate::operating_point::Extrapolation;
 
@@ -69,26 +71,45 @@ impl OutsideLaw {
 impl fmt::Display for OutsideLaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { family, law, symbol, unit, .. } = self;
-        let mut places: Vec<String> = Vec::new();
+        // One text, since a study says it of many points.
+        let mut text = format!("{family} = {law} of ");
+        let mut told: SmallVec<[Range<usize>; 8]> = SmallVec::new();
         for p in &self.places {
-            let value = p.value.map_or("no finite value".to_owned(), |x| readable(x, unit));
-            let text = format!("{} ({value})", p.name);
+            let before = text.len();
+            text += if told.is_empty() { "" } else { ", " };
+            let start = text.len();
+            text.extend([&*p.name, " ("]);
+            match p.value {
+                Some(x) => add_readable(&mut text, x, unit),
+                None => text += "no finite value",
+            }
+            text += ")";
+            let own = start..text.len();
             // Values that differ beyond what is shown are told once.
-            if !places.contains(&text) {
-                places.push(text);
+            match told.iter().any(|other| text[other.clone()] == text[own.clone()]) {
+                true => text.truncate(before),
+                false => told.push(own),
             }
         }
-        write!(f, "{family} = {law} of {} is outside its range, {symbol} ", places.join(", "))?;
+        text.extend([" is outside its range, ", symbol, " "]);
+        let mut add = |word: &str, x: f64| {
+            text += word;
+            add_readable(&mut text, x, unit);
+        };
         match (self.low, self.high) {
-            (Some(low), Some(high)) => write!(f, "from {} to {}", readable(low, unit), readable(high, unit)),
-            (None, high) => write!(f, "up to {}", readable(high.unwrap_or(f64::INFINITY), unit)),
-            (Some(low), None) => write!(f, "from {}", readable(low, unit)),
+            (Some(low), Some(high)) => {
+                add("from ", low);
+                add(" to ", high);
+            }
+            (None, high) => add("up to ", high.unwrap_or(f64::INFINITY)),
+            (Some(low), None) => add("from ", low),
         }
+        f.write_str(&text)
     }
 }
 
-/// A value with a unit that people use, four digits.
-fn readable(value: f64, unit: &str) -> String {
+/// Adds a value with a unit that people use, four digits.
+fn add_readable(text: &mut String, value: f64, unit: &str) {
     let (factor, unit) = match unit {
         "m" if value.abs() < 1e-3 => (1e6, "µm"),
         "m" => (1e3, "mm"),
@@ -102,9 +123,13 @@ fn readable(value: f64, unit: &str) -> String {
     };
     let x = value * factor;
     let digits = if x == 0.0 || !x.is_finite() { 0 } else { (3 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
-    let mut text = format!("{x:.digits$}");
-    if text.contains('.') {
-        text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    let start = text.len();
+    write!(text, "{x:.digits$}").expect("a text takes all");
+    if digits > 0 && x.is_finite() {
+        let zeros = |part: &str| part.trim_end_matches('0').trim_end_matches('.').len();
+        text.truncate(start + zeros(&text[start..]));
     }
-    if unit.is_empty() { text } else { format!("{text} {unit}") }
+    if !unit.is_empty() {
+        text.extend([" ", unit]);
+    }
 }

@@ -50,24 +50,21 @@ pub(super) fn count_lines<'a>(spans: impl Iterator<Item = &'a mut Span>, text: &
     let mut wanted: Vec<usize> = spans.iter().flat_map(|s| [s.start, s.end]).collect();
     wanted.sort_unstable();
     wanted.dedup();
-    let mut found = Vec::with_capacity(wanted.len());
-    let (mut line, mut column) = (1, 1);
-    let mut rest = wanted.iter().peekable();
-    for (at, c) in text.char_indices().chain([(text.len(), '\n')]) {
-        if rest.peek().is_none() {
-            break;
-        }
-        // Up to here: a byte inside a character belongs to that character.
-        while rest.next_if(|w| **w < at + c.len_utf8()).is_some() {
-            found.push((line, column));
-        }
-        (line, column) = if c == '\n' { (line + 1, 1) } else { (line, column + 1) };
-    }
-    let place = |at: usize| wanted.binary_search(&at).ok().and_then(|k| found.get(k).copied());
+    let (mut from, mut line, mut start) = (0, 1, 0);
+    let found: Vec<(usize, usize)> = (wanted.iter())
+        .map(|&at| {
+            let part = &text.as_bytes()[from..at];
+            line += part.iter().filter(|b| **b == b'\n').count();
+            start = part.iter().rposition(|b| *b == b'\n').map_or(start, |k| from + k + 1);
+            from = at;
+            // A byte inside a character belongs to that character.
+            (line, text[start..text.floor_char_boundary(at)].chars().count() + 1)
+        })
+        .collect();
+    let place = |at: usize| found[wanted.binary_search(&at).expect("one of them")];
     for span in &mut spans {
-        if let (Some((line, column)), Some((end_line, end_column))) = (place(span.start), place(span.end)) {
-            span.lines = Some(Lines { line, column, end_line, end_column });
-        }
+        let ((line, column), (end_line, end_column)) = (place(span.start), place(span.end));
+        span.lines = Some(Lines { line, column, end_line, end_column });
     }
 }
 

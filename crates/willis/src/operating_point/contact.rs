@@ -218,6 +218,8 @@ pub(super) struct Fixed<R> {
     rolling: Vec<(Place<R>, R)>,
     /// The ends of each part of the path with as many tooth pairs, just inside.
     ends: Vec<Place<R>>,
+    /// Seven tenths of the way from C to the end and to the start.
+    flanks: [Place<R>; 2],
 }
 
 /// One mesh at one load.
@@ -278,6 +280,14 @@ impl<R: Real> Loaded<'_, R> {
         }
         let laws = &self.physics.train.laws;
         laws.film.eval(&self.film_contact(oil, p)) * laws.film_reduction.eval(&self.inlet(oil, p))
+    }
+
+    /// The film for the law of friction: most read none, and it costs more than all else at a point.
+    fn film_read(&self, p: &Point<R>) -> R {
+        match self.physics.friction.meta().tags.contains(&Tag::Film) {
+            true => self.film(p),
+            false => R::from(0.0),
+        }
     }
 
     /// The loss factor under this load.
@@ -423,6 +433,7 @@ impl<R: Real> Physics<'_, R> {
                 friction: parts(teeth).flat_map(|[from, to]| gauss(from, to)).map(place).filter(|_| local).collect(),
                 rolling: both.map(place).filter(|_| self.rolling.is_some()).collect(),
                 ends: ends.map(|s| self.place(pair, s)).collect(),
+                flanks: [end, start].map(|s| self.place(pair, s * 0.7)),
             }
         })
     }
@@ -454,18 +465,15 @@ impl<R: Real> Physics<'_, R> {
         if !loaded.works() || !mesh.computed {
             return tooth;
         }
-        // Most laws read no film, which costs more than all else at a point.
-        let reads_film = self.friction.meta().tags.contains(&Tag::Film);
-        let film = |p: &Point<R>| if reads_film { loaded.film(p) } else { none };
         let p = loaded.at(&fixed.pitch);
-        let pitch = self.state(mesh, &loaded, loss_factor).at(&p, film(&p));
+        let pitch = self.state(mesh, &loaded, loss_factor).at(&p, loaded.film_read(&p));
         let mu = if self.friction.meta().tags.contains(&Tag::Local) {
             let (mut friction, mut weight) = (none, none);
             for (place, w) in &fixed.friction {
                 let p = loaded.at(place);
                 let own = *w * p.line_load * p.sliding;
                 weight += own;
-                friction += own * self.coefficient(&pitch.at(&p, film(&p)));
+                friction += own * self.coefficient(&pitch.at(&p, loaded.film_read(&p)));
             }
             if weight.re() > 0.0 { friction / weight } else { none }
         } else {
@@ -581,7 +589,7 @@ impl Physics<'_> {
                 (false, _) => None,
                 (true, false) => mean,
                 // Where nothing slides or presses a law may have no value; nothing is lost there.
-                (true, true) => Some(self.coefficient(&state.at(&p, loaded.film(&p)))),
+                (true, true) => Some(self.coefficient(&state.at(&p, loaded.film_read(&p)))),
             };
             let friction = friction.filter(|mu| mu.is_finite());
             // Normal force of the pair here: line load times the length of its lines of contact.
@@ -716,14 +724,14 @@ impl Physics<'_> {
             note("film_reduction", reduction.meta().id, reduction.outside(&loaded.inlet(oil, &pitch)));
         }
         let anywhere = self.state(mesh, &loaded, loaded.loss_factor(fixed));
-        let state = |p: &Point<f64>| anywhere.at(p, loaded.film(p));
+        let state = |p: &Point<f64>| anywhere.at(p, loaded.film_read(p));
         let outside = match self.friction.meta().tags.contains(&Tag::Local) {
             false => self.friction.outside(&state(&pitch)),
             // Away from the pitch point, where it slides.
             true => {
-                let [start, end] = pair.path();
-                let mut outside = self.friction.outside(&state(&loaded.point(0.7 * end)));
-                outside.extend(self.friction.outside(&state(&loaded.point(0.7 * start))));
+                let [receding, approaching] = fixed.flanks.map(|place| state(&loaded.at(&place)));
+                let mut outside = self.friction.outside(&receding);
+                outside.extend(self.friction.outside(&approaching));
                 outside.dedup_by_key(|o| o.symbol);
                 outside.sort_by_key(|o| o.symbol);
                 outside.dedup_by_key(|o| o.symbol);

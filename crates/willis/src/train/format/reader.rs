@@ -703,7 +703,7 @@ fn describe(value: &DeValue<'_>) -> String {
 }
 
 fn join(path: &str, key: &str) -> String {
-    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+    if path.is_empty() { key.to_owned() } else { [path, ".", key].concat() }
 }
 
 fn last(place: &str) -> &str {
