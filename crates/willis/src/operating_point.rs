@@ -47,6 +47,7 @@ use crate::train::{
 
 pub use bearing::BearingReport;
 pub(crate) use bearing::BearingState;
+pub(crate) use contact::KnownPaths;
 pub use contact::{ContactReport, LubricationRegime};
 pub use forces::ShaftLoad;
 pub(crate) use motion::{LEAST_SPEED, Place};
@@ -360,7 +361,7 @@ pub(crate) struct Physics<'t, R: Real = f64> {
     drags: Option<Vec<usize>>,
     forces: forces::Forces<R>,
     /// By mesh: what follows from its geometry alone.
-    fixed: Vec<OnceLock<contact::Fixed<R>>>,
+    fixed: Vec<OnceLock<Arc<contact::Fixed<R>>>>,
     /// Amounts of relative speed below it count as this, rad/s.
     least_speed: f64,
 }

@@ -13,7 +13,7 @@ use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
 use crate::heat::{HeatVerdict, Limits, Source, balance};
 use crate::kinematics::{Configuration, Layout, Motion, Transfer};
-use crate::operating_point::{Physics, Step};
+use crate::operating_point::{KnownPaths, Physics, Step};
 use crate::power_flow::{External, MeshFlow};
 use crate::train::heat::Heat;
 use crate::train::{Load, MemberId, Operation, ShiftElementId, ShiftElementKind, Train};
@@ -122,9 +122,12 @@ pub(crate) struct PointSeries<'t> {
     before: Ancestors,
 }
 
-/// What is known of trains before: which ends drive at points that prescribe the same.
+/// What is known of trains before: which ends drive at points that prescribe the same, and the paths of contact.
 #[derive(Default)]
-pub(crate) struct Ancestors(Vec<Ancestor>);
+pub(crate) struct Ancestors {
+    all: Vec<Ancestor>,
+    paths: KnownPaths,
+}
 
 /// What is left of a situation when its train is gone.
 struct Ancestor {
@@ -185,16 +188,18 @@ impl<'t> PointSeries<'t> {
 
     /// What the series of another train can take over.
     pub fn into_ancestors(self) -> Ancestors {
+        let Ancestors { all: before, mut paths } = self.before;
+        self.situations.iter().for_each(|s| paths.keep(&s.physics));
         let own = self.situations.into_iter().filter(|s| !s.patterns.is_empty());
         let mut all: Vec<Ancestor> = own
             .map(|s| Ancestor { asked: s.asked, layout: s.c.layout(), transfer: s.transfer, patterns: s.patterns })
             .collect();
-        for old in self.before.0 {
+        for old in before {
             if all.len() < MOST_SITUATIONS && !all.iter().any(|a| a.asked == old.asked && a.layout == old.layout) {
                 all.push(old);
             }
         }
-        Ancestors(all)
+        Ancestors { all, paths }
     }
 
     /// All that is known of a point.
@@ -243,11 +248,12 @@ impl<'t> PointSeries<'t> {
             return None;
         }
         let physics = Physics::new(train, operation);
+        self.before.paths.give(&physics);
         let speeds: Vec<MemberId> = operation.speeds.iter().map(|s| s.0).collect();
         let keep: Vec<MemberId> = speeds.iter().copied().chain(physics.visible()).collect();
         let c = Configuration::new(train, engaged, &operation.fixed, &keep);
         let layout = c.layout();
-        let alike = self.before.0.iter().find(|a| a.asked.is_of(operation) && a.layout == layout);
+        let alike = self.before.all.iter().find(|a| a.asked.is_of(operation) && a.layout == layout);
         let (transfer, patterns) = match alike {
             Some(alike) => (alike.transfer.clone(), alike.patterns.clone()),
             None => (c.transfer(&speeds), vec![]),
@@ -261,7 +267,7 @@ impl<'t> PointSeries<'t> {
     fn quick(&mut self, operation: &Operation, sources: bool) -> Option<Told> {
         let train = self.train;
         let is_known = self.situations.iter().any(|s| s.asked.is_of(operation));
-        if !is_known && !self.before.0.iter().any(|a| a.asked.is_of(operation)) {
+        if !is_known && !self.before.all.iter().any(|a| a.asked.is_of(operation)) {
             return None;
         }
         let Situation { c, transfer, physics, patterns, idle, .. } = self.situation(operation)?;

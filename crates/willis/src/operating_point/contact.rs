@@ -1,12 +1,14 @@
 //! A tooth contact under load: speeds, pressure, film, friction.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Pair;
 use crate::losses::film::FilmContact;
 use crate::losses::film_reduction::Inlet;
-use crate::losses::load_sharing::{Relief, ToothLoad};
-use crate::losses::loss_factor::PathOfContact;
+use crate::losses::load_sharing::{LoadSharing, Relief, ToothLoad};
+use crate::losses::loss_factor::{LossFactor, PathOfContact};
 use crate::losses::mesh_friction::{MeshContact, MeshFriction};
 use crate::losses::rolling::RollingContact;
 use crate::losses::{OutsideValidity, Tag};
@@ -200,9 +202,21 @@ struct Place<R> {
     sum: R,
 }
 
+/// What [`Fixed`] follows from: the teeth, and the laws that are looked at along them.
+#[derive(Clone, Debug, PartialEq)]
+struct Origin<R> {
+    pair: Pair<R>,
+    relief: Option<[R; 2]>,
+    loss_factor: LossFactor,
+    load_sharing: LoadSharing,
+    /// Whether friction is averaged along the path, and the loss by rolling.
+    averaged: [bool; 2],
+}
+
 /// What of a mesh follows from its geometry alone; worked out once.
 #[derive(Clone, Debug)]
 pub(super) struct Fixed<R> {
+    origin: Origin<R>,
     loss_factor: R,
     pitch: Place<R>,
     /// Sine of the operating pressure angle; radii of curvature at the pitch point, m; shortest length of the lines of contact
@@ -211,7 +225,6 @@ pub(super) struct Fixed<R> {
     radius_transverse: R,
     radius: R,
     contact_length_ratio: R,
-    composite_roughness: R,
     /// Where friction that differs from place to place is averaged, with weights; empty for other laws.
     friction: Vec<(Place<R>, R)>,
     /// Where the rolling loss is averaged, with weights whose sum is one; empty without such a law.
@@ -411,31 +424,43 @@ impl<R: Real> Physics<'_, R> {
     /// What of a mesh follows from its geometry alone: integrals over the path of contact among it, worked out once.
     fn fixed(&self, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> &Fixed<R> {
         self.fixed[flow.mesh.0].get_or_init(|| {
+            let origin = self.origin(teeth);
+            let [local, rolling] = origin.averaged;
             let pair = &teeth.pair;
             let none = R::from(0.0);
             let [start, end] = pair.path();
             let place = |(s, w): (R, R)| (self.place(pair, s), w);
-            let local = self.friction.meta().tags.contains(&Tag::Local);
             // Away from the pitch point sliding heats the inlet and thins the film, on both sides alike, so the film has a
             // kink there.
             let pitch = real::min(real::max(none, start), end);
             let both = gauss(start, pitch).chain(gauss(pitch, end)).map(|(s, w)| (s, w / (end - start)));
             let inside = |[from, to]: [R; 2]| [from + (to - from) * 1e-9, to - (to - from) * 1e-9];
             let ends = parts(teeth).filter(|[from, to]| to.re() > from.re()).flat_map(inside);
-            Fixed {
-                loss_factor: self.train.laws.loss_factor(&self.friction).eval(&PathOfContact::of(pair)),
+            let loss_factor = origin.loss_factor.eval(&PathOfContact::of(pair));
+            Arc::new(Fixed {
+                origin,
+                loss_factor,
                 pitch: self.place(pair, none),
                 sine: pair.operating_pressure_angle.sin(),
                 radius_transverse: pair.reduced_radius_transverse(none),
                 radius: pair.reduced_radius(none),
                 contact_length_ratio: pair.shortest_contact_length_ratio(),
-                composite_roughness: composite(teeth),
                 friction: parts(teeth).flat_map(|[from, to]| gauss(from, to)).map(place).filter(|_| local).collect(),
-                rolling: both.map(place).filter(|_| self.rolling.is_some()).collect(),
+                rolling: both.map(place).filter(|_| rolling).collect(),
                 ends: ends.map(|s| self.place(pair, s)).collect(),
                 flanks: [end, start].map(|s| self.place(pair, s * 0.7)),
-            }
+            })
         })
+    }
+
+    fn origin(&self, teeth: &Teeth<R>) -> Origin<R> {
+        Origin {
+            pair: teeth.pair.clone(),
+            relief: teeth.relief.map(|relief| relief.length),
+            loss_factor: self.train.laws.loss_factor(&self.friction),
+            load_sharing: self.train.laws.load_sharing,
+            averaged: [self.friction.meta().tags.contains(&Tag::Local), self.rolling.is_some()],
+        }
     }
 
     /// The share of a tooth pair in the load of its mesh.
@@ -534,7 +559,7 @@ impl<R: Real> Physics<'_, R> {
             kinematic_viscosity: oil(|o| o.kinematic_viscosity),
             pressure_viscosity: oil(|o| o.pressure_viscosity),
             roughness: (teeth.roughness[0] + teeth.roughness[1]) / 2.0,
-            composite_roughness: fixed.composite_roughness,
+            composite_roughness: composite(teeth),
             peak_roughness: (teeth.roughness[0] + teeth.roughness[1]) * PEAK,
             base: self.oil.as_ref().map_or(crate::catalogue::oil::Base::Mineral, |o| o.0.oil.base),
             lubricant_factor: self.oil.as_ref().and_then(|o| o.1.lubricant_factor),
@@ -565,6 +590,40 @@ impl<R: Real> MeshContact<R> {
             film,
             film_ratio: if rough.re() > 0.0 { film / rough } else { R::from(f64::INFINITY) },
             ..self
+        }
+    }
+}
+
+/// What was worked out along the teeth of trains before, by mesh.
+#[derive(Debug, Default)]
+pub(crate) struct KnownPaths(Vec<Vec<Arc<Fixed<f64>>>>);
+
+/// Most paths that are kept of a mesh: one for each family of laws of friction.
+const MOST_PATHS: usize = 16;
+
+impl KnownPaths {
+    /// Keeps those of a train.
+    pub fn keep(&mut self, physics: &Physics<'_>) {
+        self.0.resize(self.0.len().max(physics.fixed.len()), vec![]);
+        for (known, own) in self.0.iter_mut().zip(&physics.fixed) {
+            if let Some(own) = own.get()
+                && known.len() < MOST_PATHS
+                && !known.iter().any(|old| Arc::ptr_eq(old, own) || old.origin == own.origin)
+            {
+                known.push(own.clone());
+            }
+        }
+    }
+
+    /// Gives a train those that follow from the same teeth and laws as its own.
+    pub fn give(&self, physics: &Physics<'_>) {
+        for ((known, own), teeth) in self.0.iter().zip(&physics.fixed).zip(&physics.numbers.teeth) {
+            let Some(teeth) = teeth.as_ref().filter(|_| !known.is_empty()) else { continue };
+            let origin = physics.origin(teeth);
+            if let Some(same) = known.iter().find(|old| old.origin == origin) {
+                // One that is there already is the same.
+                let _ = own.set(same.clone());
+            }
         }
     }
 }
