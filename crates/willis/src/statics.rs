@@ -622,7 +622,8 @@ where
     // entries of B included.
     let unit = 4.0 * (n as f64 + 2.0) * f64::EPSILON;
     let residual = (t - b * &f).abs() + (sizes * f.abs() + t.abs()) * unit;
-    let off = (OMatrix::identity_generic(b.shape_generic().0, b.shape_generic().1) - &inverse * b).abs() + inverse.abs() * sizes * unit;
+    let off = (OMatrix::identity_generic(b.shape_generic().0, b.shape_generic().1) - &inverse * b).abs()
+        + inverse.abs() * sizes * unit;
     let defect = off.column_sum().max() + 1e-12;
     let v = inverse.abs() * residual;
     let bound = v.add_scalar(v.max() * defect / (1.0 - defect).max(1e-300)) * (1.0 + 1e-9);

@@ -425,6 +425,14 @@ fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
     }
 }
 
+/// What runs in one mode share in a step.
+#[derive(Clone, Copy)]
+struct Shared<'a> {
+    mode: usize,
+    packed: &'a [f64],
+    common: &'a [Option<f64>],
+}
+
 /// Some steps of a block.
 struct Stretch<'a> {
     block: &'a mut Block,
@@ -463,7 +471,7 @@ impl pulp::WithSimd for Stretch<'_> {
                             packed.resize(packed.len().max(at + 1), vec![]);
                             one.fused[at].pack(one.v.len(), &one.varying, &mut packed[at]);
                         }
-                        block.glide(simd, one, at, alike, common, &packed[at], room)
+                        block.glide(simd, one, Shared { mode: at, packed: &packed[at], common }, alike, room)
                     }
                     _ => alike,
                 };
@@ -484,12 +492,11 @@ impl Block {
         &mut self,
         simd: S,
         one: &mut FixedStep,
-        mode: usize,
+        shared: Shared<'_>,
         alike: u8,
-        common: &[Option<f64>],
-        packed: &[f64],
         room: &mut Room,
     ) -> u8 {
+        let Shared { mode, packed, common } = shared;
         let middle = one.middle();
         let s = &one.engine.system;
         let (drivers, frictions) = (s.drivers.len(), s.frictions.len());

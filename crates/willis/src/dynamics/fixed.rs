@@ -521,7 +521,6 @@ impl FixedStep {
     fn steps(&self) -> u64 {
         ((self.engine.system.scenario.end - self.start) / self.h - 1e-9).ceil() as u64
     }
-
 }
 
 /// Whether a prescribed speed that goes from one value to another at once jumps.

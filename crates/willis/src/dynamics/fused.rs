@@ -205,7 +205,8 @@ impl Fused {
         }
         let checked = rows.len();
         rows.resize(checked.next_multiple_of(BLOCK), vec![0.0; width]);
-        let of_block = |block: &[Vec<f64>]| (0..width).flat_map(|c| block.iter().map(move |row| row[c])).collect::<Vec<_>>();
+        let of_block =
+            |block: &[Vec<f64>]| (0..width).flat_map(|c| block.iter().map(move |row| row[c])).collect::<Vec<_>>();
         let weights = rows.chunks_exact(BLOCK).flat_map(of_block).collect();
         Self { rows: rows.len(), free, checked, mode: *mode, width, weights }
     }
@@ -288,13 +289,7 @@ pub(super) const FAR: f64 = 1e3;
 impl Fused {
     /// Whether every margin is far from its edge at these speeds and inputs; what [`settle`](Self::settle) gave, and
     /// room for the ends of the step.
-    pub fn holds_by_far(
-        &self,
-        of: [&[f64]; 2],
-        varying: &[usize],
-        settled: [&[f64]; 2],
-        ends: &mut Vec<f64>,
-    ) -> bool {
+    pub fn holds_by_far(&self, of: [&[f64]; 2], varying: &[usize], settled: [&[f64]; 2], ends: &mut Vec<f64>) -> bool {
         ends.resize(self.rows, 0.0);
         self.ends(of, varying, settled, ends);
         let least = settled[1];
