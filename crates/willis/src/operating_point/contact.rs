@@ -598,7 +598,7 @@ impl<R: Real> MeshContact<R> {
 #[derive(Debug, Default)]
 pub(crate) struct KnownPaths(Vec<Vec<Arc<Fixed<f64>>>>);
 
-/// Most paths that are kept of a mesh: one for each family of laws of friction.
+/// Most paths that are kept of a mesh, the last ones: about as many as laws of friction may ask for with the same teeth.
 const MOST_PATHS: usize = 16;
 
 impl KnownPaths {
@@ -606,12 +606,14 @@ impl KnownPaths {
     pub fn keep(&mut self, physics: &Physics<'_>) {
         self.0.resize(self.0.len().max(physics.fixed.len()), vec![]);
         for (known, own) in self.0.iter_mut().zip(&physics.fixed) {
-            if let Some(own) = own.get()
-                && known.len() < MOST_PATHS
-                && !known.iter().any(|old| Arc::ptr_eq(old, own) || old.origin == own.origin)
-            {
-                known.push(own.clone());
+            let Some(own) = own.get() else { continue };
+            if known.iter().any(|old| Arc::ptr_eq(old, own) || old.origin == own.origin) {
+                continue;
             }
+            if known.len() == MOST_PATHS {
+                known.remove(0);
+            }
+            known.push(own.clone());
         }
     }
 
