@@ -50,15 +50,21 @@ pub(super) fn count_lines<'a>(spans: impl Iterator<Item = &'a mut Span>, text: &
     let mut wanted: Vec<usize> = spans.iter().flat_map(|s| [s.start, s.end]).collect();
     wanted.sort_unstable();
     wanted.dedup();
-    let (mut from, mut line, mut start) = (0, 1, 0);
+    let (mut from, mut line, mut column) = (0, 1, 1);
     let found: Vec<(usize, usize)> = (wanted.iter())
         .map(|&at| {
-            let part = &text.as_bytes()[from..at];
-            line += part.iter().filter(|b| **b == b'\n').count();
-            start = part.iter().rposition(|b| *b == b'\n').map_or(start, |k| from + k + 1);
-            from = at;
             // A byte inside a character belongs to that character.
-            (line, text[start..text.floor_char_boundary(at)].chars().count() + 1)
+            let at = text.floor_char_boundary(at);
+            let part = &text[from..at];
+            from = at;
+            match part.rsplit_once('\n') {
+                Some((before, last)) => {
+                    line += 1 + before.bytes().filter(|b| *b == b'\n').count();
+                    column = 1 + last.chars().count();
+                }
+                None => column += part.chars().count(),
+            }
+            (line, column)
         })
         .collect();
     let place = |at: usize| found[wanted.binary_search(&at).expect("one of them")];
@@ -88,6 +94,27 @@ mod tests {
         assert_eq!(lines(text, text.len()..text.len()), [3, 1, 3, 1]);
         assert_eq!(lines(text, 4..12), [1, 5, 2, 6]);
         assert_eq!(lines("", 0..0), [1, 1, 1, 1]);
+    }
+
+    /// All at once as each alone by its characters, in lines long and short.
+    #[test]
+    fn many_spans_of_a_text_stand_where_each_does() {
+        for text in ["ab\n\ncµd\n𝛼\n\n\nxyz", "one long line of äöü µ and no end", "\n", "\r\n\r\nz\n"] {
+            let all = (0..=text.len()).flat_map(|a| (a..=text.len()).map(move |b| a..b));
+            let mut spans: Vec<Span> = all.map(Span::from).collect();
+            count_lines(spans.iter_mut(), text);
+            let place = |at: usize| {
+                let before: Vec<char> =
+                    text.char_indices().filter(|(k, c)| k + c.len_utf8() <= at).map(|x| x.1).collect();
+                let line = 1 + before.iter().filter(|c| **c == '\n').count();
+                [line, 1 + before.iter().rev().take_while(|c| **c != '\n').count()]
+            };
+            for span in spans {
+                let l = span.lines.unwrap();
+                let found = [[l.line, l.column], [l.end_line, l.end_column]];
+                assert_eq!(found, [span.start, span.end].map(place), "{text:?} {}..{}", span.start, span.end);
+            }
+        }
     }
 
     #[test]

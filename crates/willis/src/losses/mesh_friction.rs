@@ -34,7 +34,8 @@ pub struct MeshContact<D> {
     pub radius: D,
     /// Hertzian pressure at this point, Pa.
     pub hertz_pressure: D,
-    /// Smallest film thickness at this point, thermal reduction included, m.
+    /// Smallest film thickness at this point, thermal reduction included, m. An operating point gives it, and the ratio, to
+    /// laws tagged [`Tag::Film`] alone: zero to others, which read neither.
     pub film: D,
     /// Film thickness over the composite rms roughness, `λ`.
     pub film_ratio: D,
