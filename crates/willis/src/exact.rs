@@ -294,6 +294,8 @@ impl Rational {
 /// Operations of fractions of single words, which nearly all are: in double words they cannot overflow, and common
 /// divisors are those of single words (Knuth, The Art of Computer Programming 2, 4.5.1).
 mod word {
+    use std::cmp::Ordering;
+
     use num_integer::Integer;
     use num_rational::Ratio;
 
@@ -328,6 +330,10 @@ mod word {
         // What is common to the sum and the denominator is a part of `g`.
         let common = if g == 1 { 1 } else { ((sum % i128::from(g)) as i64).gcd(&g) };
         Some(Ratio::new_raw(if common == 1 { sum } else { sum / i128::from(common) }, wide(b / g, d / common)))
+    }
+
+    pub fn cmp((a, b): Word, (c, d): Word) -> Ordering {
+        if b == d { a.cmp(&c) } else { wide(a, d).cmp(&wide(c, b)) }
     }
 
     pub fn sub(x: Word, (c, d): Word) -> Option<Ratio<i128>> {
@@ -438,10 +444,10 @@ impl PartialOrd for Rational {
 }
 impl Ord for Rational {
     fn cmp(&self, other: &Self) -> Ordering {
-        match (&self.0, &other.0) {
-            (Repr::Small(a), Repr::Small(b)) => a.cmp(b),
-            _ => self.big().cmp(&other.big()),
+        if let (Repr::Small(a), Repr::Small(b)) = (&self.0, &other.0) {
+            return word::of(a).zip(word::of(b)).map_or_else(|| a.cmp(b), |(a, b)| word::cmp(a, b));
         }
+        long::cmp(self.long(), other.long())
     }
 }
 
@@ -492,11 +498,14 @@ pub(crate) type Matrix = Vec<Vec<Rational>>;
 
 /// Reduced row echelon form in place, pivoting only in the first `columns` columns; returns the
 /// pivot column of each of the leading rows. The rows after them are zero in those columns.
+///
+/// First down, then up: a row is cleared only with rows that are cleared themselves, so that the work on a chain, whose
+/// rows have few entries, grows with its length.
 pub(crate) fn reduce(matrix: &mut Matrix, columns: usize) -> Vec<usize> {
     let mut pivots = Vec::new();
     for column in 0..columns {
         let top = pivots.len();
-        // A pivot of ±1, or failing that the shortest row, keeps fractions small.
+        // The shortest row keeps fractions small.
         let found = (top..matrix.len())
             .filter(|&r| !matrix[r][column].is_zero())
             .min_by_key(|&r| matrix[r].iter().filter(|x| !x.is_zero()).count());
@@ -506,20 +515,26 @@ pub(crate) fn reduce(matrix: &mut Matrix, columns: usize) -> Vec<usize> {
         for x in matrix[top].iter_mut().filter(|x| !x.is_zero()) {
             *x = &*x * &inverse;
         }
-        let pivot_row = std::mem::take(&mut matrix[top]);
-        for (r, row) in matrix.iter_mut().enumerate() {
-            if r == top || row[column].is_zero() {
-                continue;
-            }
-            let factor = row[column].clone();
-            for (x, p) in row.iter_mut().zip(&pivot_row).filter(|(_, p)| !p.is_zero()) {
-                *x = &*x - &(&factor * p);
-            }
-        }
-        matrix[top] = pivot_row;
+        let (done, rest) = matrix.split_at_mut(top + 1);
+        rest.iter_mut().for_each(|row| clear(row, &done[top], column));
         pivots.push(column);
     }
+    for (top, &column) in pivots.iter().enumerate().rev() {
+        let (above, rest) = matrix.split_at_mut(top);
+        above.iter_mut().for_each(|row| clear(row, &rest[0], column));
+    }
     pivots
+}
+
+/// Takes from a row as much of another, which has a one in this column, as leaves a zero there.
+fn clear(row: &mut [Rational], by: &[Rational], column: usize) {
+    if row[column].is_zero() {
+        return;
+    }
+    let factor = row[column].clone();
+    for (x, p) in row.iter_mut().zip(by).filter(|(_, p)| !p.is_zero()) {
+        *x = &*x - &(&factor * p);
+    }
 }
 
 /// Basis of the vectors that the rows take to zero. Each has an entry 1, its last that is not zero, where the others
@@ -636,6 +651,7 @@ mod tests {
         for a in parts {
             for b in parts {
                 let all = [(a + b, a.big() + b.big()), (a - b, a.big() - b.big()), (a * b, a.big() * b.big())];
+                assert_eq!(a.cmp(b), a.big().cmp(&b.big()), "{a} and {b}");
                 let quotient = (!b.is_zero()).then(|| (a / b, a.big() / b.big()));
                 for (found, exact) in all.into_iter().chain(quotient) {
                     let found = found.big();
@@ -681,6 +697,36 @@ mod tests {
         }
         assert!(matches!(x.0, Repr::Small(_)));
         assert_eq!(x, Rational::ONE);
+    }
+
+    /// Of random rows, many of them dependent: the one reduced form that spans the same.
+    #[test]
+    fn rows_are_reduced() {
+        let mut seed = 5u64;
+        let mut random = |below: usize| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as usize % below
+        };
+        let mut dependent = 0;
+        for _ in 0..500 {
+            let (count, columns, extra) = (1 + random(7), 1 + random(7), random(3));
+            let entry = |k: usize| if k > 7 { Rational::ZERO } else { Rational::new(k as i64 - 3, 1 + k as i64 % 3) };
+            let rows: Matrix = (0..count).map(|_| (0..columns + extra).map(|_| entry(random(14))).collect()).collect();
+            let mut reduced = rows.clone();
+            let pivots = reduce(&mut reduced, columns);
+            assert!(pivots.is_sorted_by(|a, b| a < b));
+            for (top, &pivot) in pivots.iter().enumerate() {
+                assert!(reduced[top][..pivot].iter().all(Rational::is_zero), "{rows:?}");
+                assert!((0..count).all(|r| reduced[r][pivot] == Rational::from(i64::from(r == top))), "{rows:?}");
+            }
+            assert!(reduced[pivots.len()..].iter().all(|row| row[..columns].iter().all(Rational::is_zero)));
+            // Each row of either is a sum of rows of the other.
+            let both: Matrix = rows.iter().chain(&reduced).cloned().collect();
+            let of = |m: &Matrix| rank(m.clone(), columns + extra);
+            assert_eq!([of(&rows), of(&reduced)], [of(&both); 2], "{rows:?}");
+            dependent += usize::from(pivots.len() < count);
+        }
+        assert!(dependent > 100, "{dependent}");
     }
 
     #[test]

@@ -624,7 +624,7 @@ impl<'t> Configuration<'t> {
     pub(crate) fn sigma(&self, e: &Element, motion: &Motion) -> Option<i8> {
         let p = motion.speeds[e.p.0].as_ref()?;
         let c = motion.speeds[e.carrier.0].as_ref()?;
-        Some((p - c).sign() * e.a.sign())
+        Some(p.cmp(c) as i8 * e.a.sign())
     }
 }
 

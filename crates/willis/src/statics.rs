@@ -20,13 +20,13 @@
 //! has no driver and no loss (the one deterministic rule for idle meshes).
 
 mod enumeration;
+mod linear;
 mod problem;
 
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
-use nalgebra::allocator::Allocator;
-use nalgebra::{Const, DMatrix, DVector, DefaultAllocator, Dim, Dyn, OMatrix, OVector};
+use nalgebra::{Const, DMatrix, DVector, Dyn};
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
@@ -327,41 +327,6 @@ impl Equilibrium {
         m
     }
 
-    fn float_matrix(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
-        self.float_matrix_in(Dyn(self.columns.len()), rho)
-    }
-
-    /// The same of a size that may be known beforehand: it is kept where it is made then.
-    fn float_matrix_in<D: Dim>(&self, n: D, rho: &dyn Fn(usize) -> f64) -> OMatrix<f64, D, D>
-    where
-        DefaultAllocator: Allocator<D, D>,
-    {
-        let mut m = OMatrix::zeros_generic(n, n);
-        for (j, column) in self.columns.iter().enumerate() {
-            let rho = rho(j);
-            for &(r, constant, slope) in &column.floats {
-                m[(r, j)] = constant + slope * rho;
-            }
-        }
-        m
-    }
-
-    /// The sizes of the terms that the entries of that matrix are sums of: what rounding is measured by. Where a basic ratio
-    /// is near one the terms of a carrier nearly cancel, and an entry may be all round-off.
-    fn sizes<D: Dim>(&self, n: D, rho: &dyn Fn(usize) -> f64) -> OMatrix<f64, D, D>
-    where
-        DefaultAllocator: Allocator<D, D>,
-    {
-        let mut m = OMatrix::zeros_generic(n, n);
-        for (j, column) in self.columns.iter().enumerate() {
-            let rho = rho(j);
-            for &(r, constant, slope) in &column.floats {
-                m[(r, j)] = constant.abs() + (slope * rho).abs();
-            }
-        }
-        m
-    }
-
     /// Whether `B(ρ)` is regular on the whole box given by a centre and a radius for each column.
     ///
     /// With any matrix `R ≈ B_c⁻¹`, `R B(ρ)` differs from the identity by at most
@@ -565,17 +530,14 @@ impl Equilibrium {
     /// by exact arithmetic. `None` when the pattern is exactly singular.
     fn attempt(&self, choice: &[Option<bool>], t: &[Rational], t_float: &[f64]) -> Option<Trial> {
         let rho = |j: usize| choice[j].map_or(1.0, |p| self.columns[j].rho_floats[usize::from(!p)]);
-        let b = self.float_matrix(&rho);
         let exact = || -> Option<Trial> {
             let f = self.exact_forces(choice, t)?;
             let signs = f.iter().map(Rational::sign).collect();
             let forces: Vec<f64> = f.iter().map(Rational::to_f64).collect();
             Some(Trial { bounds: rounding(&forces), forces, signs, exact: Some(f) })
         };
-        let sizes = self.sizes(Dyn(self.columns.len()), &rho);
-        let Some((forces, bounds)) = certain(&b, &sizes, &DVector::from_column_slice(t_float)) else { return exact() };
+        let Some((forces, bounds)) = self.certain_forces(&rho, t_float) else { return exact() };
         let signs = forces.iter().map(|x| if *x > 0.0 { 1 } else { -1 }).collect();
-        let [forces, bounds] = [forces, bounds].map(|x| x.as_slice().to_vec());
         Some(Trial { forces, bounds, signs, exact: None })
     }
 
@@ -602,34 +564,6 @@ impl Equilibrium {
         }
         s
     }
-}
-
-/// Solves `b f = t` where rounding leaves no doubt about any sign: the forces, and how far each may be from the exact one.
-/// `sizes` are those of the terms that the entries of `b` are sums of.
-fn certain<D: Dim>(
-    b: &OMatrix<f64, D, D>,
-    sizes: &OMatrix<f64, D, D>,
-    t: &OVector<f64, D>,
-) -> Option<(OVector<f64, D>, OVector<f64, D>)>
-where
-    DefaultAllocator: Allocator<D, D> + Allocator<D>,
-{
-    let n = t.len();
-    let inverse = b.clone().try_inverse()?;
-    let mut f = &inverse * t;
-    f += &inverse * (t - b * &f);
-    // With D = I − R B and v = |R| |residual|: |f − f*| ≤ v + |D| v + |D|² v + …, rounding of the residual and of the
-    // entries of B included.
-    let unit = 4.0 * (n as f64 + 2.0) * f64::EPSILON;
-    let residual = (t - b * &f).abs() + (sizes * f.abs() + t.abs()) * unit;
-    let off = (OMatrix::identity_generic(b.shape_generic().0, b.shape_generic().1) - &inverse * b).abs()
-        + inverse.abs() * sizes * unit;
-    let defect = off.column_sum().max() + 1e-12;
-    let v = inverse.abs() * residual;
-    let bound = v.add_scalar(v.max() * defect / (1.0 - defect).max(1e-300)) * (1.0 + 1e-9);
-    // NaN fails both comparisons.
-    let certain = defect < 0.1 && (0..n).all(|j| f[j].abs() > bound[j]);
-    certain.then_some((f, bound))
 }
 
 /// What one unit of force in an element asks of a node, with ρ as given.
@@ -867,22 +801,6 @@ impl Equilibrium {
             }
     }
 
-    /// Whether the forces with these ρ are certain, each of them as is asked.
-    fn are_certain<D: Dim>(
-        &self,
-        n: D,
-        rho: &dyn Fn(usize) -> f64,
-        torques: &[f64],
-        asked: impl Fn(usize, f64) -> bool,
-    ) -> bool
-    where
-        DefaultAllocator: Allocator<D, D> + Allocator<D>,
-    {
-        let torques = OVector::from_column_slice_generic(n, Const::<1>, torques);
-        certain(&self.float_matrix_in(n, rho), &self.sizes(n, rho), &torques)
-            .is_some_and(|(forces, _)| forces.iter().enumerate().all(|(j, force)| asked(j, *force)))
-    }
-
     pub(crate) fn system(&self) -> System {
         let columns = self
             .columns
@@ -934,8 +852,8 @@ impl Equilibrium {
             let given = rho.iter().find(|(e, _)| *e == element).map(|(_, r)| *r);
             given.unwrap_or(self.columns[j].rho_floats[usize::from(!s.pattern[j])])
         };
-        let t = DVector::from_iterator(self.rows.len(), self.rows.iter().map(|&n| loads[n].to_f64()));
-        let f = self.float_matrix(&own).lu().solve(&t)?;
+        let t: Vec<f64> = self.rows.iter().map(|&n| loads[n].to_f64()).collect();
+        let f = self.forces(&own, &t)?;
         let mut shifted = Solution { exact: None, ..s.clone() };
         for (j, c) in self.columns.iter().enumerate() {
             shifted.forces[c.element] = f[j];
@@ -951,27 +869,23 @@ impl Equilibrium {
     /// `∂f_j/∂t_n` for the solution's pattern: by element, for each of `nodes`; zero where a node
     /// has no row.
     pub(crate) fn sensitivity(&self, solution: &Solution, nodes: &[usize]) -> Option<Vec<(usize, Vec<f64>)>> {
-        let inverse = self.float_matrix(&|j| self.columns[j].rho_floats[usize::from(!solution.pattern[j])]);
-        let inverse = inverse.try_inverse()?;
+        let rho = |j: usize| self.columns[j].rho_floats[usize::from(!solution.pattern[j])];
         let row = |n: &usize| self.rows.iter().position(|r| r == n);
-        Some(
-            self.columns
-                .iter()
-                .enumerate()
-                .map(|(j, c)| (c.element, nodes.iter().map(|n| row(n).map_or(0.0, |r| inverse[(j, r)])).collect()))
-                .collect(),
-        )
+        let rows: Vec<Option<usize>> = nodes.iter().map(row).collect();
+        let changes = self.changes(&rho, &rows)?;
+        let of = |(j, c): (usize, &Column)| (c.element, changes.iter().map(|change| change[j]).collect());
+        Some(self.columns.iter().enumerate().map(of).collect())
     }
 
     /// Efficiency of each moving element at which the pattern's determinant vanishes, all others
     /// unchanged: the train locks there. Only thresholds between 0 and the present efficiency.
     pub(crate) fn lock_thresholds(&self, solution: &Solution) -> Vec<(usize, f64)> {
         let rho = |j: usize| self.columns[j].rho_floats[usize::from(!solution.pattern[j])];
-        let Some(inverse) = self.float_matrix(&rho).try_inverse() else { return vec![] };
+        let Some(slopes) = self.own_slopes(&rho) else { return vec![] };
         let mut all = Vec::new();
         for (j, c) in self.columns.iter().enumerate().filter(|(_, c)| c.sigma != 0) {
             // det B(ρ*)/det B(ρ) = 1 + (ρ* − ρ) (B⁻¹ d)_j vanishes.
-            let slope: f64 = c.floats.iter().map(|&(r, _, s)| inverse[(j, r)] * s).sum();
+            let slope = slopes[j];
             if slope == 0.0 || solution.driver[c.element].is_none() {
                 continue;
             }
@@ -993,11 +907,10 @@ impl Equilibrium {
         };
         let n = self.columns.len();
         let determinant = |factor: f64| {
-            let m = self.float_matrix(&|j| {
+            self.determinant(&|j| {
                 let e = eta(j, factor);
                 if solution.pattern[j] { e } else { 1.0 / e }
-            });
-            m.determinant()
+            })
         };
         let start = determinant(1.0);
         let (mut low, mut high) = (1.0, 1.0);

@@ -7,7 +7,10 @@
 //! finds every factor: two factors never share a symbol. Higher powers arise only in derivatives
 //! and sums; there, square factors are found and the rest is left as it is.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
+
+use smallvec::SmallVec;
 
 use crate::exact::Rational;
 use crate::exact::blocks::{blocks, is_odd};
@@ -17,55 +20,70 @@ use crate::exact::residue::{PRIME, inverse, plus, times};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Symbol(pub usize);
 
-/// Exponents by symbol, without trailing zeros. Ordered as people write: by degree, then by symbol.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Monomial(Vec<u32>);
+/// The symbols that occur, in order, with their exponents, which are not zero. Of many symbols few occur in one term.
+/// Ordered as people write: by degree, then by symbol.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Monomial(SmallVec<[(Symbol, u32); 3]>);
 
 impl Monomial {
-    fn new(mut exponents: Vec<u32>) -> Self {
-        while exponents.last() == Some(&0) {
-            exponents.pop();
-        }
-        Self(exponents)
-    }
-
     fn degree(&self) -> u32 {
-        self.0.iter().sum()
+        self.0.iter().map(|(_, e)| e).sum()
     }
 
     fn of(&self, s: Symbol) -> u32 {
-        self.0.get(s.0).copied().unwrap_or(0)
+        self.0.iter().find(|own| own.0 == s).map_or(0, |own| own.1)
     }
 
     fn with(&self, s: Symbol, exponent: u32) -> Self {
-        let mut e = self.0.clone();
-        e.resize(e.len().max(s.0 + 1), 0);
-        e[s.0] = exponent;
-        Self::new(e)
+        let mut all = self.clone();
+        match (all.0.binary_search_by_key(&s, |own| own.0), exponent) {
+            (Ok(at), 0) => drop(all.0.remove(at)),
+            (Ok(at), _) => all.0[at].1 = exponent,
+            (Err(_), 0) => {}
+            (Err(at), _) => all.0.insert(at, (s, exponent)),
+        }
+        all
     }
 
     fn times(&self, other: &Self) -> Self {
-        let n = self.0.len().max(other.0.len());
-        Self((0..n).map(|k| self.of(Symbol(k)) + other.of(Symbol(k))).collect())
+        let mut product = SmallVec::with_capacity(self.0.len() + other.0.len());
+        let (mut a, mut b) = (self.0.iter().copied().peekable(), other.0.iter().copied().peekable());
+        loop {
+            product.push(match (a.peek(), b.peek()) {
+                (None, None) => return Self(product),
+                (Some(x), Some(y)) if x.0 == y.0 => {
+                    let both = (x.0, x.1 + y.1);
+                    (a.next(), b.next());
+                    both
+                }
+                (Some(x), y) if y.is_none_or(|y| x.0 < y.0) => a.next().expect("seen"),
+                _ => b.next().expect("seen"),
+            });
+        }
     }
 
     fn over(&self, other: &Self) -> Option<Self> {
-        let n = self.0.len().max(other.0.len());
-        let e: Option<Vec<u32>> = (0..n).map(|k| self.of(Symbol(k)).checked_sub(other.of(Symbol(k)))).collect();
-        e.map(Self::new)
+        let mut quotient = self.clone();
+        for &(s, exponent) in &other.0 {
+            quotient = quotient.with(s, self.of(s).checked_sub(exponent)?);
+        }
+        Some(quotient)
     }
 }
 
 impl Ord for Monomial {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        // Of one degree: one that is longer differs within the length of the other.
-        let lexicographic = || other.0.iter().zip(&self.0).map(|(b, a)| b.cmp(a)).find(|o| o.is_ne());
-        self.degree().cmp(&other.degree()).then_with(|| lexicographic().unwrap_or(std::cmp::Ordering::Equal))
+    fn cmp(&self, other: &Self) -> Ordering {
+        // Of one degree, the one with more of the first symbol in which they differ comes first.
+        let by_symbol = || {
+            let first = self.0.iter().zip(&other.0).find(|(a, b)| a != b);
+            first.map_or(Ordering::Equal, |(a, b)| a.0.cmp(&b.0).then(b.1.cmp(&a.1)))
+        };
+        self.degree().cmp(&other.degree()).then_with(by_symbol)
     }
 }
 
 impl PartialOrd for Monomial {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
@@ -93,13 +111,13 @@ impl Polynomial {
     /// A number.
     pub fn constant(value: Rational) -> Self {
         let mut p = Self(BTreeMap::new());
-        p.add_term(Monomial(vec![]), value);
+        p.add_term(Monomial::default(), value);
         p
     }
 
     /// One symbol.
     pub fn symbol(s: Symbol) -> Self {
-        Self(BTreeMap::from([(Monomial(vec![]).with(s, 1), Rational::ONE)]))
+        Self(BTreeMap::from([(Monomial::default().with(s, 1), Rational::ONE)]))
     }
 
     fn add_term(&mut self, m: Monomial, c: Rational) {
@@ -140,24 +158,20 @@ impl Polynomial {
 
     /// Terms in the order in which people write them: each a coefficient and the powers of symbols.
     pub fn terms(&self) -> impl Iterator<Item = (&Rational, Vec<(Symbol, u32)>)> {
-        self.0.iter().map(|(m, c)| {
-            let powers = m.0.iter().enumerate().filter(|(_, e)| **e > 0).map(|(k, e)| (Symbol(k), *e));
-            (c, powers.collect())
-        })
+        self.0.iter().map(|(m, c)| (c, m.0.to_vec()))
     }
 
     /// Symbols that occur.
     pub fn symbols(&self) -> Vec<Symbol> {
-        let mut occurs = vec![false; self.0.keys().map(|m| m.0.len()).max().unwrap_or(0)];
-        for m in self.0.keys() {
-            m.0.iter().zip(&mut occurs).for_each(|(exponent, occurs)| *occurs |= *exponent > 0);
-        }
-        (0..occurs.len()).filter(|&s| occurs[s]).map(Symbol).collect()
+        let mut all: Vec<Symbol> = self.0.keys().flat_map(|m| m.0.iter().map(|own| own.0)).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
     }
 
     /// Whether no power of a symbol is above the first.
     fn is_multilinear(&self) -> bool {
-        self.0.keys().all(|m| m.0.iter().all(|exponent| *exponent <= 1))
+        self.0.keys().all(|m| m.0.iter().all(|own| own.1 <= 1))
     }
 
     /// Highest power of a symbol.
@@ -208,8 +222,8 @@ impl Polynomial {
     pub fn evaluate(&self, value: &dyn Fn(Symbol) -> Rational) -> Rational {
         self.0.iter().fold(Rational::ZERO, |sum, (m, c)| {
             let mut term = c.clone();
-            for (k, e) in m.0.iter().enumerate().filter(|(_, e)| **e > 0) {
-                let v = value(Symbol(k));
+            for (s, e) in &m.0 {
+                let v = value(*s);
                 (0..*e).for_each(|_| term = &term * &v);
             }
             sum + term
@@ -352,7 +366,7 @@ impl Polynomial {
         }
         let mut p = Self(BTreeMap::new());
         for (c, exponents) in terms {
-            let mut m = Monomial(vec![]);
+            let mut m = Monomial::default();
             for s in exponents.keys().chain(lowest.keys()) {
                 let e = exponents.get(s).copied().unwrap_or(0) - lowest.get(s).copied().unwrap_or(0);
                 m = m.with(*s, e as u32);
@@ -361,6 +375,25 @@ impl Polynomial {
         }
         let below = lowest.into_iter().map(|(s, e)| (Self::symbol(s), e));
         Some(p.to_function().times(&RationalFunction::collect(Rational::ONE, below)))
+    }
+
+    /// This with functions in the place of symbols, of which `None` leaves one as it is; `None` where all are left.
+    pub(crate) fn substituted(&self, value: &dyn Fn(Symbol) -> Option<RationalFunction>) -> Option<RationalFunction> {
+        let values: Vec<_> = self.symbols().into_iter().map(|s| (s, value(s))).collect();
+        if values.iter().all(|(_, value)| value.is_none()) {
+            return None;
+        }
+        let values: BTreeMap<Symbol, RationalFunction> =
+            values.into_iter().map(|(s, value)| (s, value.unwrap_or_else(|| RationalFunction::symbol(s)))).collect();
+        Some(self.with_monomials(&values).unwrap_or_else(|| {
+            self.terms().fold(RationalFunction::ZERO, |sum, (c, powers)| {
+                let mut term = RationalFunction::from(c.clone());
+                for (s, e) in powers {
+                    (0..e).for_each(|_| term = term.times(&values[&s]));
+                }
+                sum.plus(&term)
+            })
+        }))
     }
 
     /// This polynomial as a product of its factors.
@@ -493,8 +526,8 @@ fn image(p: &Polynomial, s: Symbol) -> Vec<u64> {
     let mut all = vec![0u64; p.degree(s) as usize + 1];
     for (m, c) in &p.0 {
         let mut term = residue(c);
-        for (k, e) in m.0.iter().enumerate().filter(|(k, _)| *k != s.0) {
-            (0..*e).for_each(|_| term = times(term, probe(Symbol(k))));
+        for (other, e) in m.0.iter().filter(|own| own.0 != s) {
+            (0..*e).for_each(|_| term = times(term, probe(*other)));
         }
         let slot = &mut all[m.of(s) as usize];
         *slot = (*slot + term) % PRIME;
@@ -569,34 +602,60 @@ polynomial_operator!(Mul, mul, |a, b| {
     product
 });
 
-/// The determinant of a square matrix of polynomials as a product: of the matrix in block triangular form it is that of the
-/// diagonal blocks. `None` when one of them has a minor of more than `most` terms, or more rows than are expanded.
-pub(crate) fn determinant(columns: &[Vec<Polynomial>], most: usize) -> Option<RationalFunction> {
-    let rows_of = columns.iter().map(|c| (0..c.len()).filter(|&r| !c[r].is_zero()).collect());
-    let rows_of: Vec<Vec<usize>> = rows_of.collect();
-    let Some(blocks) = blocks(&rows_of) else { return Some(RationalFunction::ZERO) };
-    let sign = RationalFunction::from(Rational::from(if is_odd(&blocks) { -1 } else { 1 }));
-    let mut own: Vec<Polynomial> = Vec::new();
-    for block in &blocks {
-        let columns: Vec<Vec<&Polynomial>> =
-            block.columns.iter().map(|&c| block.rows.iter().map(|&r| &columns[c][r]).collect()).collect();
-        own.push(expanded(&columns, most)?);
+/// The entries of a column of a matrix that are not zero, with their rows.
+pub(crate) type Entries<'p> = Vec<(usize, &'p Polynomial)>;
+
+/// Determinants of square matrices of polynomials as products. Matrices that differ in a row or column share most of their
+/// blocks, whose factors are found once.
+#[derive(Debug)]
+pub(crate) struct Determinants {
+    /// Most terms of a minor.
+    most: usize,
+    factored: BTreeMap<Polynomial, RationalFunction>,
+}
+
+impl Determinants {
+    pub fn new(most: usize) -> Self {
+        Self { most, factored: BTreeMap::new() }
     }
-    Some(own.iter().fold(sign, |product, d| product.times(&d.to_function())))
+
+    /// The determinant of a matrix: in block triangular form it is the product of those of the diagonal blocks. `None` when
+    /// one of them has a minor of too many terms, or more rows than are expanded.
+    pub fn of(&mut self, columns: &[Entries<'_>]) -> Option<RationalFunction> {
+        let rows_of: Vec<Vec<usize>> = columns.iter().map(|c| c.iter().map(|own| own.0).collect()).collect();
+        let Some(blocks) = blocks(&rows_of) else { return Some(RationalFunction::ZERO) };
+        let sign = RationalFunction::from(Rational::from(if is_odd(&blocks) { -1 } else { 1 }));
+        let (mut own, mut row_in) = (vec![sign], vec![None; columns.len()]);
+        for block in &blocks {
+            block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
+            let inside = |c: &usize| columns[*c].iter().filter_map(|(r, p)| Some((row_in[*r]?, *p))).collect();
+            let columns: Vec<Entries<'_>> = block.columns.iter().map(inside).collect();
+            let expanded = expanded(&columns, self.most)?;
+            own.push(match self.factored.get(&expanded) {
+                Some(known) => known.clone(),
+                None => self.factored.entry(expanded).or_insert_with_key(Polynomial::to_function).clone(),
+            });
+            block.rows.iter().for_each(|&row| row_in[row] = None);
+        }
+        Some(RationalFunction::product(own))
+    }
 }
 
 /// The determinant of a square matrix of polynomials, by expansion along columns with every minor
 /// computed once; `None` when a minor has more than `most` terms, or there are more than 60 rows.
-fn expanded(columns: &[Vec<&Polynomial>], most: usize) -> Option<Polynomial> {
+fn expanded(columns: &[Entries<'_>], most: usize) -> Option<Polynomial> {
     // A minor is known by its rows, a bit each.
     if columns.len() > 60 {
         return None;
+    }
+    if let [column] = columns {
+        return column.first().map(|own| own.1.clone()).filter(|p| p.len() <= most);
     }
     let mut minors: BTreeMap<u64, Polynomial> = BTreeMap::from([(0, Polynomial::from(1))]);
     for column in columns {
         let mut next: BTreeMap<u64, Polynomial> = BTreeMap::new();
         for (rows, minor) in &minors {
-            for (r, entry) in column.iter().enumerate().filter(|(r, e)| rows >> r & 1 == 0 && !e.is_zero()) {
+            for (r, entry) in column.iter().filter(|(r, _)| rows >> r & 1 == 0) {
                 let above = (rows >> r).count_ones();
                 let sign = Rational::from(if above % 2 == 0 { 1 } else { -1 });
                 let term = (minor * *entry).scaled(&sign);
@@ -613,7 +672,7 @@ fn expanded(columns: &[Vec<&Polynomial>], most: usize) -> Option<Polynomial> {
     Some(minors.into_iter().next().map_or(Polynomial::from(0), |(_, p)| p))
 }
 
-/// A rational function: a number times powers of distinct, numerically primitive polynomials.
+/// A rational function: a number times powers of distinct, numerically primitive polynomials, in their order.
 ///
 /// # Example
 /// ```
@@ -649,14 +708,28 @@ impl RationalFunction {
 
     /// Sorts the factors, joins equal ones and cancels what is common to two that are not.
     fn collect(number: Rational, factors: impl IntoIterator<Item = (Polynomial, i32)>) -> Self {
-        let mut all: BTreeMap<Polynomial, i32> = BTreeMap::new();
-        if !number.is_zero() {
-            factors.into_iter().for_each(|(p, e)| *all.entry(p).or_insert(0) += e);
+        let mut all: Vec<(Polynomial, i32)> = factors.into_iter().collect();
+        // They mostly come in sorted stretches, which this finds.
+        all.sort_by(|a, b| a.0.cmp(&b.0));
+        all.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            kept.1 += if same { next.1 } else { 0 };
+            same
+        });
+        Self::reduced(number, all)
+    }
+
+    /// Cancels what is common to two of the factors, which are sorted and distinct.
+    fn reduced(number: Rational, mut factors: Vec<(Polynomial, i32)>) -> Self {
+        if number.is_zero() {
+            return Self::ZERO;
         }
-        all.retain(|_, e| *e != 0);
-        let mut factors: Vec<_> = all.into_iter().collect();
+        factors.retain(|(_, e)| *e != 0);
         // Factors are irreducible unless a square occurs in them; only then can two share a part.
         let coarse: Vec<bool> = factors.iter().map(|(p, _)| !p.is_multilinear()).collect();
+        if !coarse.contains(&true) {
+            return Self { number, factors };
+        }
         let pair = (0..factors.len()).flat_map(|i| (0..i).map(move |j| (i, j))).find_map(|(i, j)| {
             let ((p, _), (q, _)) = (&factors[i], &factors[j]);
             if !coarse[i] && !coarse[j] {
@@ -713,7 +786,33 @@ impl RationalFunction {
 
     /// The product.
     pub fn times(&self, other: &Self) -> Self {
-        Self::collect(&self.number * &other.number, self.factors.iter().chain(&other.factors).cloned())
+        // The factors of both are sorted.
+        let mut factors = Vec::with_capacity(self.factors.len() + other.factors.len());
+        let mut mine = self.factors.iter().peekable();
+        for (p, e) in &other.factors {
+            while let Some(own) = mine.next_if(|own| own.0 < *p) {
+                factors.push(own.clone());
+            }
+            let same = mine.next_if(|own| own.0 == *p).map_or(0, |own| own.1);
+            factors.push((p.clone(), e + same));
+        }
+        factors.extend(mine.cloned());
+        Self::reduced(&self.number * &other.number, factors)
+    }
+
+    /// The product of many, whose factors are joined once.
+    pub(crate) fn product(all: impl IntoIterator<Item = Self>) -> Self {
+        let (mut number, mut factors) = (Rational::ONE, Vec::new());
+        for f in all {
+            number = &number * &f.number;
+            factors.extend(f.factors);
+        }
+        Self::collect(number, factors)
+    }
+
+    /// The same factors with other powers, and another number.
+    pub(crate) fn with_powers(&self, number: Rational, power: impl Fn(&Polynomial, i32) -> i32) -> Self {
+        Self::reduced(number, self.factors.iter().map(|(p, e)| (p.clone(), power(p, *e))).collect())
     }
 
     /// The quotient.
@@ -744,16 +843,11 @@ impl RationalFunction {
             return if self.is_zero() { other.clone() } else { self.clone() };
         }
         // What both share stays factored; the rest is multiplied out over a common denominator.
-        let power = |f: &Self, p: &Polynomial| f.factors.iter().find(|(q, _)| q == p).map_or(0, |(_, e)| *e);
-        let shared: Vec<(Polynomial, i32)> = self
-            .factors
-            .iter()
-            .chain(&other.factors)
-            .map(|(p, _)| (p.clone(), power(self, p).min(power(other, p))))
-            .collect::<BTreeMap<_, _>>()
-            .into_iter()
-            .collect();
-        let shared = Self::collect(Rational::ONE, shared);
+        let power =
+            |f: &Self, p: &Polynomial| f.factors.binary_search_by(|own| own.0.cmp(p)).map_or(0, |at| f.factors[at].1);
+        let shared = self.factors.iter().chain(&other.factors).map(|(p, _)| (p, power(self, p).min(power(other, p))));
+        let shared: BTreeMap<&Polynomial, i32> = shared.collect();
+        let shared = Self::reduced(Rational::ONE, shared.into_iter().map(|(p, e)| (p.clone(), e)).collect());
         let rest = |f: &Self| {
             let left = f.over(&shared);
             left.factors.iter().fold(Polynomial::constant(left.number.clone()), |product, (p, e)| {
@@ -781,25 +875,19 @@ impl RationalFunction {
     /// Other functions in the place of symbols; `None` leaves a symbol as it is. `None` when a
     /// denominator vanishes.
     pub fn substituted(&self, value: &dyn Fn(Symbol) -> Option<Self>) -> Option<Self> {
+        self.with_factors(&mut |p| p.substituted(value))
+    }
+
+    /// Other functions in the place of factors; `None` leaves a factor as it is. `None` when a denominator vanishes.
+    pub(crate) fn with_factors(&self, value: &mut dyn FnMut(&Polynomial) -> Option<Self>) -> Option<Self> {
         // Factors are joined once, at the end.
         let mut number = self.number.clone();
         let mut factors: Vec<(Polynomial, i32)> = Vec::with_capacity(self.factors.len());
         for (p, e) in &self.factors {
-            if p.symbols().into_iter().all(|s| value(s).is_none()) {
+            let Some(sum) = value(p) else {
                 factors.push((p.clone(), *e));
                 continue;
-            }
-            let values: BTreeMap<Symbol, Self> =
-                p.symbols().into_iter().map(|s| (s, value(s).unwrap_or_else(|| Self::symbol(s)))).collect();
-            let sum = p.with_monomials(&values).unwrap_or_else(|| {
-                p.terms().fold(Self::ZERO, |sum, (c, powers)| {
-                    let mut term = Self::from(c.clone());
-                    for (s, e) in powers {
-                        (0..e).for_each(|_| term = term.times(&values[&s]));
-                    }
-                    sum.plus(&term)
-                })
-            });
+            };
             if sum.is_zero() && *e < 0 {
                 return None;
             }
@@ -1123,11 +1211,55 @@ mod tests {
         assert_eq!(f.substituted(&|s| (s == X).then_some(RationalFunction::ONE)), None, "a pole");
     }
 
+    /// As of lists of all exponents, of which most are zero.
+    #[test]
+    fn products_of_powers_are_those_of_all_exponents() {
+        let dense: Vec<[u32; 4]> = (0..81).map(|k: u32| [k % 3, k / 3 % 3, k / 9 % 3, k / 27]).collect();
+        let of = |exponents: &[u32; 4]| {
+            (0..4).fold(Monomial::default(), |m, k| m.with(Symbol(k * 3), 7).with(Symbol(k * 3), exponents[k]))
+        };
+        let degree = |e: &[u32; 4]| e.iter().sum::<u32>();
+        for a in &dense {
+            for b in &dense {
+                assert_eq!(of(a).cmp(&of(b)), degree(a).cmp(&degree(b)).then_with(|| b.cmp(a)), "{a:?} {b:?}");
+                let sum: [u32; 4] = std::array::from_fn(|k| a[k] + b[k]);
+                assert_eq!(of(a).times(&of(b)), of(&sum));
+                assert_eq!(of(&sum).over(&of(b)), Some(of(a)));
+                let divides = (0..4).all(|k| b[k] <= a[k]);
+                assert_eq!(of(a).over(&of(b)).is_some(), divides);
+            }
+        }
+    }
+
+    #[test]
+    fn products_of_many_are_those_of_two_after_the_other() {
+        let sum = |x: Symbol, c: i64| (&s(x) + &n(c)).to_function();
+        let square = (&(&s(X) * &s(X)) - &n(1)).to_function();
+        let all = [
+            sum(Y, 2),
+            square,
+            sum(X, 1).recip(),
+            sum(Z, 3),
+            sum(Y, 2),
+            sum(X, -1),
+            RationalFunction::symbol(Z).recip(),
+        ];
+        let folded = all.iter().fold(RationalFunction::ONE, |product, f| product.times(f));
+        assert_eq!(RationalFunction::product(all.clone()), folded);
+        assert!(folded.factors().is_sorted_by(|a, b| a.0 < b.0));
+        assert_eq!(show(&folded), "(1 - x)^2*(2 + y)^2*(3 + z)/z");
+    }
+
+    fn entries(column: &[Polynomial]) -> Entries<'_> {
+        column.iter().enumerate().filter(|(_, p)| !p.is_zero()).collect()
+    }
+
     #[test]
     fn determinants_of_three() {
         let m = [[n(1), s(X), n(0)], [n(0), n(1), s(Y)], [s(Z), n(0), n(1)]].map(|c| c.to_vec());
-        assert_eq!(determinant(&m, 1), None);
-        assert_eq!(determinant(&m, 9).unwrap(), (&n(1) + &(&(&s(X) * &s(Y)) * &s(Z))).to_function());
+        let columns: Vec<Entries<'_>> = m.iter().map(|c| entries(c)).collect();
+        assert_eq!(Determinants::new(1).of(&columns), None);
+        assert_eq!(Determinants::new(9).of(&columns).unwrap(), (&n(1) + &(&(&s(X) * &s(Y)) * &s(Z))).to_function());
     }
 
     /// Of random matrices, many of which fall into blocks or are singular by their zeros alone: at numbers for the
@@ -1140,7 +1272,7 @@ mod tests {
             (seed >> 33) as usize % below
         };
         let value = |s: Symbol| Rational::from([3, -5, 7][s.0]);
-        let mut blocked = 0;
+        let (mut blocked, mut determinants) = (0, Determinants::new(1000));
         for _ in 0..400 {
             let size = 1 + random(7);
             let columns: Vec<Vec<Polynomial>> = (0..size)
@@ -1156,7 +1288,8 @@ mod tests {
                 .collect();
             let rows: Vec<Vec<Rational>> =
                 (0..size).map(|r| columns.iter().map(|c| c[r].evaluate(&value)).collect()).collect();
-            let own = determinant(&columns, 1000).unwrap();
+            let sparse: Vec<Entries<'_>> = columns.iter().map(|c| entries(c)).collect();
+            let own = determinants.of(&sparse).unwrap();
             blocked += usize::from(own.factors().len() > 1);
             assert_eq!(own.evaluate(&value).unwrap(), crate::exact::determinant(&rows), "{columns:?}");
         }

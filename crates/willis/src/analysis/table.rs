@@ -334,7 +334,7 @@ fn one_way_speeds(c: &Configuration<'_>, transfer: &Transfer, place: &str, name:
         let element = &train.shift_elements[id.0];
         let [a, b] = element.members.map(|m| transfer.speeds[m.0].as_ref().map(|w| w[0].clone()));
         if let (Some(a), Some(b)) = (a, b)
-            && (&a - &b).sign() == element.blocks
+            && a.cmp(&b) as i8 == element.blocks
         {
             diagnostics.push(
                 Diagnostic::new(

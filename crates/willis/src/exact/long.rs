@@ -4,6 +4,7 @@
 //! are looked for with a remainder first, which takes the long number down to the length of the short one at once.
 
 use std::borrow::Cow;
+use std::cmp::Ordering;
 
 use num_bigint::{BigInt, BigUint};
 use num_integer::Integer;
@@ -13,8 +14,12 @@ use num_traits::{One, Signed, ToPrimitive, Zero};
 /// Numerator, and denominator, which is positive.
 pub(super) type Long<'a> = (Cow<'a, BigInt>, Cow<'a, BigInt>);
 
-/// Of numbers of the same length to so many bits, halving finds the common divisor faster than a remainder does.
+/// Of numbers of the same length to so many bits, halving finds the common divisor faster than remainders do.
 const ALIKE: u64 = 16;
+
+/// So many remainders are looked at all the same: they end at once where a number is nearly a multiple of the other, as the
+/// denominators of neighbours in a chain.
+const FEW: usize = 6;
 
 /// The largest common divisor of two numbers, not both zero.
 fn common(a: &BigInt, b: &BigInt) -> BigInt {
@@ -24,6 +29,7 @@ fn common(a: &BigInt, b: &BigInt) -> BigInt {
     let (a, b) = (a.magnitude(), b.magnitude());
     let (a, b) = if a < b { (b, a) } else { (a, b) };
     let (mut long, mut short) = (Cow::Borrowed(a), Cow::Borrowed(b));
+    let mut remainders = 0;
     let found = loop {
         if short.is_zero() {
             break long.into_owned();
@@ -32,9 +38,10 @@ fn common(a: &BigInt, b: &BigInt) -> BigInt {
             let rest = (&*long % word).to_u64().expect("less than a word");
             break BigUint::from(word.gcd(&rest));
         }
-        if long.bits() <= short.bits() + ALIKE {
+        if remainders >= FEW && long.bits() <= short.bits() + ALIKE {
             break long.gcd(&short);
         }
+        remainders += 1;
         let rest = &*long % &*short;
         (long, short) = (short, Cow::Owned(rest));
     };
@@ -68,6 +75,11 @@ pub(super) fn mul((a, b): Long<'_>, (c, d): Long<'_>) -> BigRational {
     }
     let (g, h) = (common(&a, &d), common(&c, &b));
     BigRational::new_raw(&*over(&a, &g) * &*over(&c, &h), &*over(&b, &h) * &*over(&d, &g))
+}
+
+/// Order by the products with the other denominator: no common divisors are looked for.
+pub(super) fn cmp((a, b): Long<'_>, (c, d): Long<'_>) -> Ordering {
+    a.sign().cmp(&c.sign()).then_with(|| if b == d { a.cmp(&c) } else { (&*a * &*d).cmp(&(&*c * &*b)) })
 }
 
 /// # Panics

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::exact::Rational;
-use crate::symbolic::{self, Notation, Polynomial, RationalFunction, Symbol};
+use crate::symbolic::{Determinants, Entries, Notation, Polynomial, RationalFunction, Symbol};
 use crate::train::MeshId;
 
 use super::hub::Hubs;
@@ -575,19 +575,21 @@ impl<'s, 't> Shape<'s, 't> {
                 reference.push(t);
             }
         }
-        let determinant = |rows: &[Vec<Polynomial>]| {
-            let columns: Vec<Vec<Polynomial>> =
-                (0..rows.len()).map(|c| rows.iter().map(|r| r[c].clone()).collect()).collect();
-            symbolic::determinant(&columns, MOST_TERMS).ok_or_else(too_long)
-        };
-        let whole = determinant(&rows)?;
+        let mut determinants = Determinants::new(MOST_TERMS);
+        let mut determinant = |columns: &[Entries<'_>]| determinants.of(columns).ok_or_else(too_long);
+        let columns = columns_of(&rows, k);
+        let whole = determinant(&columns)?;
         if whole.is_zero() {
             return Err("the terminal torques are not determined by each other".to_owned());
         }
         let first = setup.free.len();
-        let with_row = |r: usize, own: Vec<Polynomial>| {
-            let mut changed = rows.clone();
-            changed[first + r] = own;
+        // The row of a reference replaced by another one.
+        let mut with_row = |r: usize, own: &[Polynomial]| {
+            let mut changed = columns.clone();
+            for (column, entry) in changed.iter_mut().zip(own) {
+                column.retain(|(row, _)| *row != first + r);
+                column.extend((!entry.is_zero()).then_some((first + r, entry)));
+            }
             determinant(&changed).map(|d| d.over(&whole))
         };
         let d = setup.torques;
@@ -597,41 +599,43 @@ impl<'s, 't> Shape<'s, 't> {
                     .map(|r| match reference.iter().position(|&own| own == t) {
                         Some(own) if own == r => Ok(RationalFunction::ONE),
                         Some(_) => Ok(RationalFunction::ZERO),
-                        None => with_row(r, row(setup.terminals[t].node, &x)),
+                        None => with_row(r, &row(setup.terminals[t].node, &x)),
                     })
                     .collect()
             })
             .collect::<Result<_, _>>()?;
-        let force = (0..k)
-            .map(|j| -> Result<Vec<RationalFunction>, String> {
-                (0..d).map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect())).collect()
-            })
-            .collect::<Result<_, _>>()?;
+        let mut unit = vec![Polynomial::from(0); k];
+        let mut force = Vec::with_capacity(k);
+        for j in 0..k {
+            unit[j] = Polynomial::from(1);
+            force.push((0..d).map(|r| with_row(r, &unit)).collect::<Result<Vec<_>, _>>()?);
+            unit[j] = Polynomial::from(0);
+        }
 
         // Speeds: the elements' rows and one row for each base speed.
-        let mut columns: Vec<Vec<Polynomial>> =
-            nodes.iter().map(|&n| (0..k).map(|j| kinematic(setup, j, n, &i[j])).collect()).collect();
-        for &b in &setup.base {
-            for (n, column) in nodes.iter().zip(&mut columns) {
-                column.push(Polynomial::from(i64::from(setup.terminals[b].node == *n)));
-            }
-        }
-        let whole = symbolic::determinant(&columns, MOST_TERMS).ok_or_else(too_long)?;
+        let mut rows: Vec<Vec<Polynomial>> =
+            (0..k).map(|j| nodes.iter().map(|&n| kinematic(setup, j, n, &i[j])).collect()).collect();
+        rows.extend(setup.base.iter().map(|&b| {
+            let own = setup.terminals[b].node;
+            nodes.iter().map(|&n| Polynomial::from(i64::from(own == n))).collect()
+        }));
+        let mut columns = columns_of(&rows, nodes.len());
+        let whole = determinant(&columns)?;
         if whole.is_zero() {
             return Err("the speeds are not determined by those of the terminals".to_owned());
         }
-        let node_speeds: Vec<Vec<RationalFunction>> = (0..nodes.len())
-            .map(|at| {
-                (0..setup.base.len())
-                    .map(|b| {
-                        // Cramer: the node's column replaced by the unit vector of base b's row.
-                        let mut changed = columns.clone();
-                        changed[at] = (0..nodes.len()).map(|r| Polynomial::from(i64::from(r == k + b))).collect();
-                        symbolic::determinant(&changed, MOST_TERMS).map(|d| d.over(&whole)).ok_or_else(too_long)
-                    })
-                    .collect()
-            })
-            .collect::<Result<_, String>>()?;
+        let one = Polynomial::from(1);
+        let mut node_speeds = Vec::with_capacity(nodes.len());
+        for at in 0..nodes.len() {
+            let own = std::mem::take(&mut columns[at]);
+            let mut of_base = |b: usize| {
+                // Cramer: the node's column replaced by the unit vector of base b's row.
+                columns[at] = vec![(k + b, &one)];
+                determinant(&columns).map(|d| d.over(&whole))
+            };
+            node_speeds.push((0..setup.base.len()).map(&mut of_base).collect::<Result<Vec<_>, String>>()?);
+            columns[at] = own;
+        }
         let node_speed = |node: usize, b: usize| -> RationalFunction {
             nodes.iter().position(|&n| n == node).map_or(RationalFunction::ZERO, |at| node_speeds[at][b].clone())
         };
@@ -689,9 +693,18 @@ impl<'s, 't> Shape<'s, 't> {
     fn driven(&self, pattern: &Pattern) -> Rc<Driven> {
         let known = self.driven.borrow().get(pattern).cloned();
         known.unwrap_or_else(|| {
-            let here =
-                |f: &RationalFunction| f.substituted(&|s| self.x_value(pattern, s)).expect("x has no poles of its own");
-            let all = |rows: &[Vec<RationalFunction>]| rows.iter().map(|r| r.iter().map(here).collect()).collect();
+            // Many functions are made of the same few factors.
+            let mut known: BTreeMap<Polynomial, Option<RationalFunction>> = BTreeMap::new();
+            let mut factor = |p: &Polynomial| match known.get(p) {
+                Some(own) => own.clone(),
+                None => {
+                    let own = p.substituted(&|s| self.x_value(pattern, s));
+                    known.entry(p.clone()).or_insert(own).clone()
+                }
+            };
+            let mut here = |f: &RationalFunction| f.with_factors(&mut factor).expect("x has no poles of its own");
+            let mut all =
+                |rows: &[Vec<RationalFunction>]| rows.iter().map(|r| r.iter().map(&mut here).collect()).collect();
             let own = Rc::new(Driven { torque: all(&self.torque), force: all(&self.force) });
             self.driven.borrow_mut().insert(pattern.clone(), own.clone());
             own
@@ -965,16 +978,12 @@ fn bare(f: &RationalFunction, names: &Names) -> RationalFunction {
     let positive =
         |p: &Polynomial| p.terms().all(|(c, _)| c.sign() > 0) && only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth]);
     let product_of_ratios = |p: &Polynomial| p.len() == 1 && only(p, &[SymbolKind::Ratio]);
-    let number = RationalFunction::from(Rational::from(i64::from(f.number().sign())));
-    f.factors().iter().fold(number, |product, (p, e)| {
-        let own = p.to_function();
+    f.with_powers(Rational::from(i64::from(f.number().sign())), |p, e| match e % 2 {
+        _ if positive(p) => 0,
+        0 if product_of_ratios(p) => 0,
+        0 => 2,
         // A denominator has the sign of its product.
-        match e % 2 {
-            _ if positive(p) => product,
-            0 if product_of_ratios(p) => product,
-            0 => product.times(&own).times(&own),
-            _ => product.times(&own),
-        }
+        _ => 1,
     })
 }
 
@@ -992,6 +1001,12 @@ fn without_squares(conditions: &mut [Condition]) {
             }
         }
     }
+}
+
+/// What is not zero in each of the columns of some rows.
+fn columns_of(rows: &[Vec<Polynomial>], columns: usize) -> Vec<Entries<'_>> {
+    let of = |c: usize| rows.iter().enumerate().map(|(r, row)| (r, &row[c])).filter(|(_, p)| !p.is_zero()).collect();
+    (0..columns).map(of).collect()
 }
 
 /// Whether rows of polynomials are independent: with the ratios of this train and without losses, or
@@ -1014,13 +1029,15 @@ fn independent(rows: &[Vec<Polynomial>], setup: &Setup<'_>, names: &Names, actua
 /// Coefficient of the force of element `j` in the balance of a node, over a polynomial ratio.
 fn coefficient(setup: &Setup<'_>, j: usize, node: usize, x: &Polynomial) -> Polynomial {
     let e = setup.element(j);
-    let one = Polynomial::from(1);
-    let minus = x.scaled(&Rational::from(-1));
-    let carrier = x - &one;
     let mut sum = Polynomial::from(0);
-    for (member, c) in [(e.p, &one), (e.q, &minus), (e.carrier, &carrier)] {
+    for (member, part) in [(e.p, 0), (e.q, 1), (e.carrier, 2)] {
         if setup.c.node(member) == Some(node) {
-            sum = &sum + c;
+            let one = Polynomial::from(1);
+            sum = match part {
+                0 => &sum + &one,
+                1 => &sum - x,
+                _ => &sum + &(x - &one),
+            };
         }
     }
     sum

@@ -3,6 +3,8 @@
 //! The bound of each component is its own: |B⁻¹| times what the solution leaves over in the equations, which are kept
 //! as they were given. So neither the largest torque nor how the inverse came about is in it.
 
+use std::ops::Range;
+
 use crate::exact::Rational;
 use crate::exact::residue::{PRIME, power, times};
 
@@ -121,23 +123,27 @@ impl Basis {
             if value.is_nan() || value.abs() < 1e-13 {
                 return false;
             }
-            for k in 0..n {
-                b.swap(c * n + k, pivot * n + k);
-                inv.swap(c * n + k, pivot * n + k);
-            }
             for m in [&mut *b, &mut *inv] {
+                if pivot != c {
+                    let (head, tail) = m.split_at_mut(pivot * n);
+                    head[c * n..(c + 1) * n].swap_with_slice(&mut tail[..n]);
+                }
                 m[c * n..(c + 1) * n].iter_mut().for_each(|x| *x /= value);
             }
+            // Of long trains much of a row is zero.
+            let filled = [&*b, &*inv].map(|m| {
+                let row = &m[c * n..(c + 1) * n];
+                let first = row.iter().position(|x| *x != 0.0).unwrap_or(n);
+                first..row.iter().rposition(|x| *x != 0.0).map_or(n, |last| last + 1)
+            });
             for r in (0..n).filter(|&r| r != c) {
                 let factor = b[r * n + c];
                 if factor != 0.0 {
-                    for m in [&mut *b, &mut *inv] {
+                    for (m, Range { start, end }) in [&mut *b, &mut *inv].into_iter().zip(filled.clone()) {
                         let (head, tail) = m.split_at_mut(r.max(c) * n);
-                        let (row, top) = if r < c {
-                            (&mut head[r * n..(r + 1) * n], &tail[..n])
-                        } else {
-                            (&mut tail[..n], &head[c * n..(c + 1) * n])
-                        };
+                        let (own, pivot) = if r < c { (r * n, 0) } else { (0, c * n) };
+                        let (row, top) = if r < c { (head, &*tail) } else { (tail, &*head) };
+                        let (row, top) = (&mut row[own + start..own + end], &top[pivot + start..pivot + end]);
                         row.iter_mut().zip(top).for_each(|(x, y)| *x -= factor * y);
                     }
                 }
