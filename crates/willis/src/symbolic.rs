@@ -53,7 +53,8 @@ impl Monomial {
                 (None, None) => return Self(product),
                 (Some(x), Some(y)) if x.0 == y.0 => {
                     let both = (x.0, x.1 + y.1);
-                    (a.next(), b.next());
+                    a.next();
+                    b.next();
                     both
                 }
                 (Some(x), y) if y.is_none_or(|y| x.0 < y.0) => a.next().expect("seen"),

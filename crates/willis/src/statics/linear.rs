@@ -240,7 +240,7 @@ mod tests {
             free[from] = false;
             let sun = (shafts[from].as_str(), 20 + random(20) as i64);
             let ring = ("frame", 60 + random(40) as i64);
-            let set = SetSpec::simple(&format!("P{k}"), sun, ring, &shafts[k + 1]);
+            let set = SetSpec::simple(format!("P{k}"), sun, ring, &shafts[k + 1]);
             train = train.set(set.basic_efficiency(0.9 + 0.1 * random(1000) as f64 / 1000.0));
         }
         let ends = (0..=sets).filter(|&k| k == 0 || free[k]).map(|k| shafts[k].as_str());

@@ -191,7 +191,8 @@ struct Spots<'a, 'f> {
     sides: [f64; 2],
     /// Points of the link within it.
     way: Vec<(f64, f64)>,
-    ribbons: &'a [Band],
+    /// The links that run there, with as much of them.
+    near: Vec<(usize, Band)>,
 }
 
 impl Spots<'_, '_> {
@@ -227,7 +228,7 @@ impl Spots<'_, '_> {
         if self.layout.labels.iter().any(|o| o.meets(&place)) {
             return None;
         }
-        let others = || self.ribbons.iter().enumerate().filter(|(k, _)| *k != self.link).map(|(_, r)| r);
+        let others = || self.near.iter().filter(|(k, _)| *k != self.link).map(|(_, r)| r);
         let within = |p: &(f64, f64)| place.x[0] <= p.0 && p.0 <= place.x[1];
         // How much of a ribbon the words would cover, in rows and points.
         let covered = |(thick, points): &Band| -> f64 {
@@ -245,7 +246,7 @@ impl Spots<'_, '_> {
             points.iter().filter(lies).count()
         };
         let behind: usize = others().map(beyond).sum();
-        let own = if step == 0 { 0.0 } else { covered(&self.ribbons[self.link]) };
+        let own: f64 = self.near.iter().filter(|(k, _)| step > 0 && *k == self.link).map(|(_, r)| covered(r)).sum();
         let l = &self.layout.flow.links[self.link];
         let cost = far
             + 2.0 * crossed
@@ -694,11 +695,20 @@ impl<'f> Layout<'f> {
 
     /// The places for words of that size along a link in a gap between columns, if they fit in there: the first gap of a link
     /// has room for them.
-    fn spot<'a>(&'a self, link: usize, gap: usize, size: [f64; 2], ribbons: &'a [Band]) -> Option<Spots<'a, 'f>> {
+    fn spot<'a>(&'a self, link: usize, gap: usize, size: [f64; 2], ribbons: &[Band]) -> Option<Spots<'a, 'f>> {
         let left = self.columns[gap].right + self.channel(gap, true);
         let right = self.columns[gap + 1].left - self.channel(gap + 1, false);
-        let way = ribbons[link].1.iter().copied().filter(|p| left <= p.0 && p.0 <= right).collect();
-        (right - left >= size[0]).then_some(Spots { layout: self, link, gap, size, sides: [left, right], way, ribbons })
+        if right - left < size[0] {
+            return None;
+        }
+        let between = |margin: f64| move |p: &(f64, f64)| left - margin <= p.0 && p.0 <= right + margin;
+        let way = ribbons[link].1.iter().copied().filter(between(0.0)).collect();
+        let near = ribbons.iter().enumerate().filter_map(|(k, (thick, points))| {
+            let points: Vec<_> = points.iter().copied().filter(between(1.0)).collect();
+            (!points.is_empty()).then_some((k, (*thick, points)))
+        });
+        let near = near.collect();
+        Some(Spots { layout: self, link, gap, size, sides: [left, right], way, near })
     }
 
     /// The upper left corner becomes the origin.
