@@ -166,6 +166,8 @@ pub(crate) struct Equilibrium {
     elements: usize,
     /// Diagonal blocks of the equations, in the order in which they are solved.
     blocks: Vec<Block>,
+    /// What is solved together in floating point, in this order: those blocks of a long train, else everything.
+    groups: Vec<Block>,
     certificate: Certificate,
 }
 
@@ -238,7 +240,8 @@ impl Equilibrium {
         let rows_of: Vec<Vec<usize>> = columns.iter().map(|c| c.entries.iter().map(|e| e.0).collect()).collect();
         let blocks = blocks(&rows_of).ok_or(Unsolvable::Indeterminate)?;
         let certificate = Certificate::Undecided;
-        let mut problem = Self { columns, rows, elements: c.elements.len(), blocks, certificate };
+        let groups = linear::groups(&blocks);
+        let mut problem = Self { columns, rows, elements: c.elements.len(), blocks, groups, certificate };
         let own;
         // A single block is the whole.
         let parts = match problem.blocks.len() {
@@ -274,7 +277,7 @@ impl Equilibrium {
             });
             let columns = columns.collect();
             block.rows.iter().for_each(|&row| row_in[row] = None);
-            Self { columns, rows: block.rows.clone(), blocks: vec![], ..*self }
+            Self { columns, rows: block.rows.clone(), blocks: vec![], groups: vec![], ..*self }
         };
         self.blocks.iter().map(part).collect()
     }

@@ -13,16 +13,25 @@ use super::{Equilibrium, MOST_TOGETHER};
 /// Rounding of a coefficient with its product, relative to the terms that it is made of.
 const UNIT: f64 = 4.0 * f64::EPSILON;
 
-impl Equilibrium {
-    /// Which equations are solved together for which unknowns, in this order.
-    fn groups(&self) -> Vec<Block> {
-        let n = self.columns.len();
-        match n <= MOST_TOGETHER || self.blocks.is_empty() {
-            true => vec![Block { rows: (0..n).collect(), columns: (0..n).collect() }],
-            false => self.blocks.clone(),
-        }
+/// Which equations are solved together for which unknowns, in this order.
+pub(super) fn groups(blocks: &[Block]) -> Vec<Block> {
+    let n = blocks.iter().map(|b| b.rows.len()).sum();
+    match n <= MOST_TOGETHER {
+        true => vec![Block { rows: (0..n).collect(), columns: (0..n).collect() }],
+        false => blocks.to_vec(),
     }
+}
 
+/// What stands in the equations: a constant part and one with ρ; and the size of both, by which rounding is measured.
+fn coefficient(constant: f64, changing: f64) -> f64 {
+    constant + changing
+}
+
+fn size(constant: f64, changing: f64) -> f64 {
+    constant.abs() + changing.abs()
+}
+
+impl Equilibrium {
     pub(super) fn float_matrix(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
         self.float_matrix_in(Dyn(self.columns.len()), rho)
     }
@@ -36,7 +45,7 @@ impl Equilibrium {
         for (j, column) in self.columns.iter().enumerate() {
             let rho = rho(j);
             for &(r, constant, slope) in &column.floats {
-                m[(r, j)] = constant + slope * rho;
+                m[(r, j)] = coefficient(constant, slope * rho);
             }
         }
         m
@@ -52,38 +61,51 @@ impl Equilibrium {
         for (j, column) in self.columns.iter().enumerate() {
             let rho = rho(j);
             for &(r, constant, slope) in &column.floats {
-                m[(r, j)] = constant.abs() + (slope * rho).abs();
+                m[(r, j)] = size(constant, slope * rho);
             }
         }
         m
     }
 
-    /// Matrix of a group, and the sizes of its terms. `row_in` has the place of each of its rows.
-    fn group(&self, of: &Block, row_in: &[Option<usize>], rho: &dyn Fn(usize) -> f64) -> [DMatrix<f64>; 2] {
-        let n = of.columns.len();
-        let (mut m, mut sizes) = (DMatrix::zeros(n, n), DMatrix::zeros(n, n));
-        for (k, &j) in of.columns.iter().enumerate() {
+    /// Each group, with the place of each of its rows.
+    fn each_group(&self, mut see: impl FnMut(&Block, &[Option<usize>]) -> Option<()>) -> Option<()> {
+        let mut row_in = vec![None; self.rows.len()];
+        for block in &self.groups {
+            block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
+            see(block, &row_in)?;
+            block.rows.iter().for_each(|&row| row_in[row] = None);
+        }
+        Some(())
+    }
+
+    /// A matrix of a group, whose entries are made of constant and changing parts.
+    fn of_group(
+        &self,
+        block: &Block,
+        row_in: &[Option<usize>],
+        rho: &dyn Fn(usize) -> f64,
+        entry: fn(f64, f64) -> f64,
+    ) -> DMatrix<f64> {
+        let mut m = DMatrix::zeros(block.rows.len(), block.rows.len());
+        for (k, &j) in block.columns.iter().enumerate() {
             let rho = rho(j);
             for &(r, constant, slope) in &self.columns[j].floats {
                 if let Some(r) = row_in[r] {
-                    m[(r, k)] = constant + slope * rho;
-                    sizes[(r, k)] = constant.abs() + (slope * rho).abs();
+                    m[(r, k)] = entry(constant, slope * rho);
                 }
             }
         }
-        [m, sizes]
+        m
     }
 
     /// The matrices of all groups.
-    fn group_matrices(&self, rho: &dyn Fn(usize) -> f64) -> Vec<(Block, [DMatrix<f64>; 2])> {
-        let mut row_in = vec![None; self.rows.len()];
-        let with_matrix = |block: Block| {
-            block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
-            let matrices = self.group(&block, &row_in, rho);
-            block.rows.iter().for_each(|&row| row_in[row] = None);
-            (block, matrices)
-        };
-        self.groups().into_iter().map(with_matrix).collect()
+    fn group_matrices(&self, rho: &dyn Fn(usize) -> f64) -> Vec<DMatrix<f64>> {
+        let mut all = Vec::with_capacity(self.groups.len());
+        self.each_group(|block, row_in| {
+            all.push(self.of_group(block, row_in, rho, coefficient));
+            Some(())
+        });
+        all
     }
 
     /// Forces under the loads `t` where rounding leaves no doubt about any sign, and how far each may be from the exact one.
@@ -92,40 +114,40 @@ impl Equilibrium {
         let (mut forces, mut bounds) = (vec![0.0; n], vec![0.0; n]);
         // What is left of the loads, and how far that may be off.
         let (mut left, mut off) = (t.to_vec(), vec![0.0; n]);
-        for (block, [matrix, sizes]) in self.group_matrices(rho) {
+        self.each_group(|block, row_in| {
+            let [matrix, sizes] = [coefficient, size].map(|entry| self.of_group(block, row_in, rho, entry));
             let of = |all: &[f64]| DVector::from_iterator(block.rows.len(), block.rows.iter().map(|&row| all[row]));
             let (own, own_bounds) = certain(&matrix, &sizes, &of(&left), Some(&of(&off)))?;
             for (k, &j) in block.columns.iter().enumerate() {
-                (forces[j], bounds[j]) = (own[k], own_bounds[k]);
                 let (f, rho) = (own[k], rho(j));
+                (forces[j], bounds[j]) = (f, own_bounds[k]);
                 for &(row, constant, slope) in &self.columns[j].floats {
-                    let (coefficient, size) = (constant + slope * rho, constant.abs() + (slope * rho).abs());
+                    let (coefficient, size) = (coefficient(constant, slope * rho), size(constant, slope * rho));
                     off[row] +=
                         UNIT * (size * f.abs() + left[row].abs()) + coefficient.abs() * bounds[j] * (1.0 + 1e-9);
                     left[row] -= coefficient * f;
                 }
             }
-        }
+            Some(())
+        })?;
         Some((forces, bounds))
     }
 
     /// Forces under the loads `t`, as far as floating point goes; `None` where the equations are singular.
     pub(super) fn forces(&self, rho: &dyn Fn(usize) -> f64, t: &[f64]) -> Option<Vec<f64>> {
-        let groups = self.group_matrices(rho);
-        self.substitute(&groups, rho, t, |k, right| groups[k].1[0].clone().lu().solve(right))
+        let matrices = self.group_matrices(rho);
+        self.substitute(rho, t, |k, right| matrices[k].clone().lu().solve(right))
     }
 
     /// By how much the forces change with the load of each of these rows; by nothing where there is none.
     pub(super) fn changes(&self, rho: &dyn Fn(usize) -> f64, rows: &[Option<usize>]) -> Option<Vec<Vec<f64>>> {
-        let groups = self.group_matrices(rho);
-        let inverses =
-            groups.iter().map(|(_, [matrix, _])| matrix.clone().try_inverse()).collect::<Option<Vec<_>>>()?;
+        let inverses = self.group_matrices(rho).into_iter().map(DMatrix::try_inverse).collect::<Option<Vec<_>>>()?;
         let n = self.columns.len();
         let change = |row: &Option<usize>| {
             let Some(row) = *row else { return Some(vec![0.0; n]) };
             let mut t = vec![0.0; n];
             t[row] = 1.0;
-            self.substitute(&groups, rho, &t, |k, right| Some(&inverses[k] * right))
+            self.substitute(rho, &t, |k, right| Some(&inverses[k] * right))
         };
         rows.iter().map(change).collect()
     }
@@ -133,19 +155,18 @@ impl Equilibrium {
     /// Solves group after group, each by `solve` with what those before it leave of the loads `t`.
     fn substitute(
         &self,
-        groups: &[(Block, [DMatrix<f64>; 2])],
         rho: &dyn Fn(usize) -> f64,
         t: &[f64],
         solve: impl Fn(usize, &DVector<f64>) -> Option<DVector<f64>>,
     ) -> Option<Vec<f64>> {
         let (mut forces, mut left) = (vec![0.0; t.len()], t.to_vec());
-        for (k, (block, _)) in groups.iter().enumerate() {
+        for (k, block) in self.groups.iter().enumerate() {
             let right = DVector::from_iterator(block.rows.len(), block.rows.iter().map(|&row| left[row]));
             let own = solve(k, &right)?;
             for (&j, &f) in block.columns.iter().zip(&own) {
                 forces[j] = f;
                 let rho = rho(j);
-                self.columns[j].floats.iter().for_each(|&(r, constant, slope)| left[r] -= (constant + slope * rho) * f);
+                self.columns[j].floats.iter().for_each(|&(r, a, b)| left[r] -= coefficient(a, b * rho) * f);
             }
         }
         Some(forces)
@@ -155,22 +176,25 @@ impl Equilibrium {
     /// enough. `None` where the equations are singular.
     pub(super) fn own_slopes(&self, rho: &dyn Fn(usize) -> f64) -> Option<Vec<f64>> {
         let mut slopes = vec![0.0; self.columns.len()];
-        let mut row_in = vec![None; self.rows.len()];
-        for (block, [matrix, _]) in self.group_matrices(rho) {
-            block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
-            let inverse = matrix.try_inverse()?;
+        self.each_group(|block, row_in| {
+            let inverse = self.of_group(block, row_in, rho, coefficient).try_inverse()?;
             for (k, &j) in block.columns.iter().enumerate() {
                 let inside = self.columns[j].floats.iter().filter_map(|&(r, _, slope)| Some((row_in[r]?, slope)));
                 slopes[j] = inside.map(|(r, slope)| inverse[(k, r)] * slope).sum();
             }
-            block.rows.iter().for_each(|&row| row_in[row] = None);
-        }
+            Some(())
+        })?;
         Some(slopes)
     }
 
     /// The determinant but for a sign that does not depend on ρ: the product of those of the groups.
     pub(super) fn determinant(&self, rho: &dyn Fn(usize) -> f64) -> f64 {
-        self.group_matrices(rho).into_iter().map(|(_, [matrix, _])| matrix.determinant()).product()
+        let mut product = 1.0;
+        self.each_group(|block, row_in| {
+            product *= self.of_group(block, row_in, rho, coefficient).determinant();
+            Some(())
+        });
+        product
     }
 
     /// Whether the forces with these ρ are certain, each of them as is asked.
@@ -263,9 +287,10 @@ mod tests {
             let node = |m: &MemberId| c.node(*m).unwrap();
             let loaded: Vec<usize> = others.iter().map(node).collect();
             let equilibrium = Equilibrium::new(&c, &sigma, &[node(input)], &loaded).unwrap();
-            assert!(equilibrium.groups().len() > 1);
-            let whole = Equilibrium { blocks: vec![], ..equilibrium.clone() };
-            assert_eq!(whole.groups().len(), 1);
+            assert!(equilibrium.groups.len() > 1);
+            let n = equilibrium.columns.len();
+            let all = Block { rows: (0..n).collect(), columns: (0..n).collect() };
+            let whole = Equilibrium { groups: vec![all], ..equilibrium.clone() };
             let mut loads = vec![Rational::ZERO; c.nodes];
             loaded.iter().for_each(|&n| loads[n] = Rational::new(random(200) as i64 - 100, 7));
             let [solution] = &equilibrium.solve(&loads).solutions[..] else { panic!("one equilibrium") };

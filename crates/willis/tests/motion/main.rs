@@ -14,5 +14,6 @@ mod reactions;
 mod reference;
 mod rows;
 mod runs;
+mod series;
 mod steps;
 mod variators;

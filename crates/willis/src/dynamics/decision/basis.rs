@@ -3,8 +3,6 @@
 //! The bound of each component is its own: |B⁻¹| times what the solution leaves over in the equations, which are kept
 //! as they were given. So neither the largest torque nor how the inverse came about is in it.
 
-use std::ops::Range;
-
 use crate::exact::Rational;
 use crate::exact::residue::{PRIME, power, times};
 
@@ -30,6 +28,26 @@ impl Vector {
     pub fn sign(&self, i: usize) -> i8 {
         let (x, error) = (self.value[i], self.error[i]);
         if x > error { 1 } else { -i8::from(x < -error) }
+    }
+}
+
+/// More rows are cleared first down, then up.
+const LONG: usize = 64;
+
+/// Takes row `c` from row `r` of a matrix and its inverse, as often as clears column `c`, where row `c` has a one.
+fn take_from(r: usize, c: usize, matrix: &mut [f64], inverse: &mut [f64], n: usize) {
+    let factor = matrix[r * n + c];
+    if factor == 0.0 {
+        return;
+    }
+    for m in [matrix, inverse] {
+        let (head, tail) = m.split_at_mut(r.max(c) * n);
+        let (row, top) = if r < c {
+            (&mut head[r * n..(r + 1) * n], &tail[..n])
+        } else {
+            (&mut tail[..n], &head[c * n..(c + 1) * n])
+        };
+        row.iter_mut().zip(top).for_each(|(x, y)| *x -= factor * y);
     }
 }
 
@@ -115,6 +133,7 @@ impl Basis {
         }
         let (b, inv) = (&mut self.wide, &mut self.inverse);
         (0..n).for_each(|i| inv[i * n + i] = 1.0);
+        let is_long = n > LONG;
         for c in 0..n {
             let pivot = (c..n).max_by(|&p, &q| b[p * n + c].abs().total_cmp(&b[q * n + c].abs())).expect("not empty");
             let value = b[pivot * n + c];
@@ -130,24 +149,13 @@ impl Basis {
                 }
                 m[c * n..(c + 1) * n].iter_mut().for_each(|x| *x /= value);
             }
-            // Of long trains much of a row is zero.
-            let filled = [&*b, &*inv].map(|m| {
-                let row = &m[c * n..(c + 1) * n];
-                let first = row.iter().position(|x| *x != 0.0).unwrap_or(n);
-                first..row.iter().rposition(|x| *x != 0.0).map_or(n, |last| last + 1)
-            });
-            for r in (0..n).filter(|&r| r != c) {
-                let factor = b[r * n + c];
-                if factor != 0.0 {
-                    for (m, Range { start, end }) in [&mut *b, &mut *inv].into_iter().zip(filled.clone()) {
-                        let (head, tail) = m.split_at_mut(r.max(c) * n);
-                        let (own, pivot) = if r < c { (r * n, 0) } else { (0, c * n) };
-                        let (row, top) = if r < c { (head, &*tail) } else { (tail, &*head) };
-                        let (row, top) = (&mut row[own + start..own + end], &top[pivot + start..pivot + end]);
-                        row.iter_mut().zip(top).for_each(|(x, y)| *x -= factor * y);
-                    }
-                }
+            for r in (0..n).filter(|&r| r > c || r < c && !is_long) {
+                take_from(r, c, b, inv, n);
             }
+        }
+        // From below up, a row is cleared with rows that are cleared: of a chain few have anything to clear.
+        for c in (0..n).rev().filter(|_| is_long) {
+            (0..c).for_each(|r| take_from(r, c, b, inv, n));
         }
         true
     }
