@@ -93,20 +93,24 @@ fn draw(curves: &[Curve]) -> String {
         sets *= 2.0;
     }
     svg += &text((LEFT + RIGHT) / 2.0, BOTTOM + 42.0, "middle", ink, 13.0, "Sets in series");
+    // What stands at the end of each line, and where.
+    let mut ends: Vec<f64> = curves.iter().map(|c| c.points.last().map_or(BOTTOM, |p| y(p[1]))).collect();
     // What in proportion would be, from the first point of the first curve.
     if let Some([first, count]) = curves.first().and_then(|c| c.points.first()) {
         let end = [x(most_sets), y(count * most_sets / first)];
         svg += &line([x(*first), y(*count)], end, "stroke=\"#8f8f8f\" stroke-dasharray=\"5 4\" stroke-width=\"1.2\"");
-        svg += &text(end[0] + 8.0, end[1] + 4.0, "start", faint, 12.0, "in proportion");
+        ends.push(end[1]);
     }
     // Names keep clear of each other, the highest first.
-    let mut names: Vec<f64> = curves.iter().map(|c| c.points.last().map_or(BOTTOM, |p| y(p[1]))).collect();
-    let mut order: Vec<usize> = (0..names.len()).collect();
-    order.sort_by(|a, b| names[*a].total_cmp(&names[*b]));
+    let mut order: Vec<usize> = (0..ends.len()).collect();
+    order.sort_by(|a, b| ends[*a].total_cmp(&ends[*b]));
     for pair in order.windows(2) {
-        names[pair[1]] = names[pair[1]].max(names[pair[0]] + 15.0);
+        ends[pair[1]] = ends[pair[1]].max(ends[pair[0]] + 15.0);
     }
-    for ((curve, ink), name) in curves.iter().zip(INKS.iter().cycle()).zip(names) {
+    if let Some(end) = ends.get(curves.len()) {
+        svg += &text(RIGHT + 8.0, end + 4.0, "start", faint, 12.0, "in proportion");
+    }
+    for ((curve, ink), name) in curves.iter().zip(INKS.iter().cycle()).zip(&ends) {
         let points: Vec<String> = curve.points.iter().map(|p| format!("{:.1},{:.1}", x(p[0]), y(p[1]))).collect();
         svg +=
             &format!("<polyline fill=\"none\" points=\"{}\" stroke=\"{ink}\" stroke-width=\"2\"/>\n", points.join(" "));
