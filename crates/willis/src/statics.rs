@@ -340,7 +340,7 @@ impl Equilibrium {
         let b = self.float_matrix(&|j| centre[j]);
         let Some(r) = b.clone().try_inverse() else { return false };
         let product = &r * &b;
-        let bound = r.abs() * self.sizes(Dyn(n), &|j| centre[j]);
+        let bound = r.abs() * self.sizes(&|j| centre[j]);
         let mut m = DMatrix::from_fn(n, n, |i, j| {
             let unit = if i == j { 1.0 } else { 0.0 };
             (unit - product[(i, j)]).abs() + 4.0 * (n as f64) * f64::EPSILON * bound[(i, j)]

@@ -12,7 +12,7 @@ use std::rc::Rc;
 
 use crate::exact::Rational;
 use crate::symbolic::{Determinants, Entries, Notation, Polynomial, RationalFunction, Symbol};
-use crate::train::MeshId;
+use crate::train::{MemberId, MeshId};
 
 use super::hub::Hubs;
 use super::setup::{Pattern, Setup};
@@ -1029,15 +1029,18 @@ fn independent(rows: &[Vec<Polynomial>], setup: &Setup<'_>, names: &Names, actua
 /// Coefficient of the force of element `j` in the balance of a node, over a polynomial ratio.
 fn coefficient(setup: &Setup<'_>, j: usize, node: usize, x: &Polynomial) -> Polynomial {
     let e = setup.element(j);
+    let stands_here = |m: MemberId| setup.c.node(m) == Some(node);
     let mut sum = Polynomial::from(0);
-    for (member, part) in [(e.p, 0), (e.q, 1), (e.carrier, 2)] {
-        if setup.c.node(member) == Some(node) {
-            let one = Polynomial::from(1);
-            sum = match part {
-                0 => &sum + &one,
-                1 => &sum - x,
-                _ => &sum + &(x - &one),
-            };
+    // Of a long train most elements do not touch a node.
+    if ![e.p, e.q, e.carrier].into_iter().any(stands_here) {
+        return sum;
+    }
+    let one = Polynomial::from(1);
+    let minus = x.scaled(&Rational::from(-1));
+    let carrier = x - &one;
+    for (member, c) in [(e.p, &one), (e.q, &minus), (e.carrier, &carrier)] {
+        if stands_here(member) {
+            sum = &sum + c;
         }
     }
     sum

@@ -33,27 +33,18 @@ fn size(constant: f64, changing: f64) -> f64 {
 
 impl Equilibrium {
     pub(super) fn float_matrix(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
-        self.float_matrix_in(Dyn(self.columns.len()), rho)
-    }
-
-    /// The same of a size that may be known beforehand: it is kept where it is made then.
-    fn float_matrix_in<D: Dim>(&self, n: D, rho: &dyn Fn(usize) -> f64) -> OMatrix<f64, D, D>
-    where
-        DefaultAllocator: Allocator<D, D>,
-    {
-        let mut m = OMatrix::zeros_generic(n, n);
-        for (j, column) in self.columns.iter().enumerate() {
-            let rho = rho(j);
-            for &(r, constant, slope) in &column.floats {
-                m[(r, j)] = coefficient(constant, slope * rho);
-            }
-        }
-        m
+        self.matrix_of(Dyn(self.columns.len()), rho, coefficient)
     }
 
     /// The sizes of the terms that the entries of that matrix are sums of: what rounding is measured by. Where a basic ratio
     /// is near one the terms of a carrier nearly cancel, and an entry may be all round-off.
-    pub(super) fn sizes<D: Dim>(&self, n: D, rho: &dyn Fn(usize) -> f64) -> OMatrix<f64, D, D>
+    pub(super) fn sizes(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
+        self.matrix_of(Dyn(self.columns.len()), rho, size)
+    }
+
+    /// A matrix whose entries are made of constant and changing parts; of a size that may be known beforehand: it is kept
+    /// where it is made then.
+    fn matrix_of<D: Dim>(&self, n: D, rho: &dyn Fn(usize) -> f64, entry: impl Fn(f64, f64) -> f64) -> OMatrix<f64, D, D>
     where
         DefaultAllocator: Allocator<D, D>,
     {
@@ -61,7 +52,7 @@ impl Equilibrium {
         for (j, column) in self.columns.iter().enumerate() {
             let rho = rho(j);
             for &(r, constant, slope) in &column.floats {
-                m[(r, j)] = size(constant, slope * rho);
+                m[(r, j)] = entry(constant, slope * rho);
             }
         }
         m
@@ -209,7 +200,7 @@ impl Equilibrium {
         DefaultAllocator: Allocator<D, D> + Allocator<D>,
     {
         let torques = OVector::from_column_slice_generic(n, Const::<1>, torques);
-        certain(&self.float_matrix_in(n, rho), &self.sizes(n, rho), &torques, None)
+        certain(&self.matrix_of(n, rho, coefficient), &self.matrix_of(n, rho, size), &torques, None)
             .is_some_and(|(forces, _)| forces.iter().enumerate().all(|(j, force)| asked(j, *force)))
     }
 }
