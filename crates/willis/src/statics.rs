@@ -11,7 +11,7 @@
 //!   horizontal form). It is proved by a verified bound on the spectral radius, or by
 //!   splitting the box until each part is regular, and comparing the exact determinants at one corner of each part.
 //! * **Solution.** With a certificate: least-index pivoting from the lossless pattern, which ends
-//!   under the W-property (Murty). Without: every pattern is tried and every solution returned.
+//!   under the W-property (Murty). Without: every pattern is tried, block by block, and every solution returned.
 //! * **Decisions** that lie within the error bound of the floating point solution are made again
 //!   in exact rationals. No tolerance decides a sign.
 //!
@@ -50,7 +50,7 @@ pub enum Certificate {
     Determinants,
     /// No certificate for every load (determinants of both signs or zero: for some load there is no
     /// or more than one solution; or too many boxes to look at). What is reported for the load at
-    /// hand was found by trying every sign pattern.
+    /// hand was found by trying every sign pattern, of one block of the equations after the other.
     Enumeration,
     /// Too many interacting elements to decide; a solution was found by pivoting.
     Undecided,
@@ -168,10 +168,12 @@ pub(crate) struct Equilibrium {
     blocks: Vec<Block>,
     /// What is solved together in floating point, in this order: those blocks of a long train, else everything.
     groups: Vec<Block>,
+    /// Those blocks as problems of their own, where one of them is not certified.
+    parts: Vec<Equilibrium>,
     certificate: Certificate,
 }
 
-/// Most elements (with relative motion) for which all sign patterns are tried.
+/// Most elements (with relative motion) of a block without certificate for which all sign patterns are tried.
 const MOST_ENUMERATED: usize = 16;
 /// Most boxes looked at for the determinant certificate.
 const MOST_BOXES: usize = 1 << 13;
@@ -241,31 +243,42 @@ impl Equilibrium {
         let blocks = blocks(&rows_of).ok_or(Unsolvable::Indeterminate)?;
         let certificate = Certificate::Undecided;
         let groups = linear::groups(&blocks);
-        let mut problem = Self { columns, rows, elements: c.elements.len(), blocks, groups, certificate };
-        let own;
+        let mut problem =
+            Self { columns, rows, elements: c.elements.len(), blocks, groups, parts: vec![], certificate };
+        let mut own = vec![];
         // A single block is the whole.
         let parts = match problem.blocks.len() {
             1 => std::slice::from_ref(&problem),
             _ => {
-                own = problem.parts();
+                own = problem.cut();
                 &own[..]
             }
         };
         if !parts.iter().all(Self::determines_forces) {
             return Err(Unsolvable::Indeterminate);
         }
-        let certificate = match parts.iter().map(Self::certify).collect::<Option<Vec<_>>>() {
+        let certificates: Vec<_> = parts.iter().map(Self::certify).collect();
+        problem.certificate = match certificates.iter().copied().collect::<Option<Vec<_>>>() {
             Some(all) if all.contains(&Certificate::Determinants) => Certificate::Determinants,
             Some(_) => Certificate::SpectralRadius,
-            None if problem.moving() <= MOST_ENUMERATED => Certificate::Enumeration,
-            None => Certificate::Undecided,
+            None => {
+                let undecided = |(part, of): (&Self, &Option<_>)| of.is_none() && part.moving() > MOST_ENUMERATED;
+                let are_few = !parts.iter().zip(&certificates).any(undecided);
+                if own.is_empty() {
+                    own = problem.cut();
+                }
+                for (part, of) in own.iter_mut().zip(certificates) {
+                    part.certificate = of.unwrap_or(Certificate::Enumeration);
+                }
+                problem.parts = own;
+                if are_few { Certificate::Enumeration } else { Certificate::Undecided }
+            }
         };
-        problem.certificate = certificate;
         Ok(problem)
     }
 
     /// The diagonal blocks as problems of their own.
-    fn parts(&self) -> Vec<Self> {
+    fn cut(&self) -> Vec<Self> {
         let mut row_in = vec![None; self.rows.len()];
         let part = |block: &Block| {
             block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
@@ -277,7 +290,9 @@ impl Equilibrium {
             });
             let columns = columns.collect();
             block.rows.iter().for_each(|&row| row_in[row] = None);
-            Self { columns, rows: block.rows.clone(), blocks: vec![], groups: vec![], ..*self }
+            let n = block.rows.len();
+            let blocks = vec![Block { rows: (0..n).collect(), columns: (0..n).collect() }];
+            Self { columns, rows: block.rows.clone(), groups: blocks.clone(), blocks, parts: vec![], ..*self }
         };
         self.blocks.iter().map(part).collect()
     }
@@ -452,7 +467,13 @@ impl Equilibrium {
                 let certificate = if found.is_some() { self.certificate } else { Certificate::Undecided };
                 Answer { solutions: found.into_iter().collect(), certificate, stretches: vec![] }
             }
-            Certificate::Enumeration => self.enumerate(&t, &t_float),
+            Certificate::Enumeration => {
+                let answer = self.enumerate(&t);
+                if answer.certificate != Certificate::Undecided {
+                    return answer;
+                }
+                Answer { solutions: self.pivot(&t, &t_float).into_iter().collect(), ..answer }
+            }
         }
     }
 

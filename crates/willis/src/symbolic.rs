@@ -840,8 +840,13 @@ impl RationalFunction {
 
     /// The sum.
     pub fn plus(&self, other: &Self) -> Self {
+        self.plus_within(other, usize::MAX).expect("there is no limit")
+    }
+
+    /// The sum; none where what the two do not share has more than `most` terms when it is multiplied out.
+    pub(crate) fn plus_within(&self, other: &Self, most: usize) -> Option<Self> {
         if self.is_zero() || other.is_zero() {
-            return if self.is_zero() { other.clone() } else { self.clone() };
+            return Some(if self.is_zero() { other.clone() } else { self.clone() });
         }
         // What both share stays factored; the rest is multiplied out over a common denominator.
         let power =
@@ -851,11 +856,11 @@ impl RationalFunction {
         let shared = Self::reduced(Rational::ONE, shared.into_iter().map(|(p, e)| (p.clone(), e)).collect());
         let rest = |f: &Self| {
             let left = f.over(&shared);
-            left.factors.iter().fold(Polynomial::constant(left.number.clone()), |product, (p, e)| {
-                (0..*e).fold(product, |product, _| &product * p)
-            })
+            let each = || left.factors.iter().flat_map(|(p, e)| (0..*e).map(move |_| p));
+            let terms = each().fold(1usize, |terms, p| terms.saturating_mul(p.len()));
+            (terms <= most).then(|| each().fold(Polynomial::constant(left.number.clone()), |product, p| &product * p))
         };
-        (&rest(self) + &rest(other)).to_function().times(&shared)
+        Some((&rest(self)? + &rest(other)?).to_function().times(&shared))
     }
 
     /// The difference.

@@ -281,8 +281,16 @@ impl<'s, 't> Formulas<'s, 't> {
     fn id_of(&mut self, pattern: &Pattern, powers: &[i8]) -> String {
         let known = self.all.iter().position(|d| d.pattern == *pattern && d.powers == powers);
         let at = known.unwrap_or_else(|| {
-            let shape = self.shape.as_ref().ok();
-            let own = shape.map(|s| s.formula(pattern, powers, Ratios::Basic, Efficiencies::Basic));
+            let own = match &self.shape {
+                Ok(shape) => match shape.formula(pattern, powers, Ratios::Basic, Efficiencies::Basic) {
+                    Ok(own) => Some(own),
+                    Err(why) => {
+                        self.shape = Err(why);
+                        None
+                    }
+                },
+                Err(_) => None,
+            };
             self.all.push(Driven { pattern: pattern.clone(), powers: powers.to_vec(), own });
             self.all.len() - 1
         });

@@ -475,7 +475,7 @@ fn one_freedom(
         if powers != [1, -1] {
             continue;
         }
-        let own = shape.formula(&cell.pattern, &powers, request.ratios, request.efficiencies);
+        let own = shape.formula(&cell.pattern, &powers, request.ratios, request.efficiencies)?;
         let speed_ratio = own.speeds[0].over(&own.speeds[1]);
         let torque_ratio = own.torques[1].over(&own.torques[0]);
         let mut formula = closed(train, &setup, state, &own, &powers, &cell.pattern, base, &cell.torques);
@@ -519,8 +519,8 @@ fn several_freedoms(
             && to.iter().all(|t| r.outputs.contains(t))
             && request.regime.as_ref().is_none_or(|id| *id == r.id)
     };
-    let made = |r: &RegimeReport, efficiencies: Efficiencies| {
-        let own = shape.formula(&r.pattern, &r.power_signs, request.ratios, efficiencies);
+    let made = |r: &RegimeReport, efficiencies: Efficiencies| -> Result<Made, String> {
+        let own = shape.formula(&r.pattern, &r.power_signs, request.ratios, efficiencies)?;
         let region = &atlas.regions[r.region - 1];
         let mut f = closed(train, &setup, state, &own, &r.power_signs, &r.pattern, &region.point, &r.torques);
         f.title = arrow(&f.inputs, &f.outputs);
@@ -538,7 +538,7 @@ fn several_freedoms(
             .collect();
         f.keep_used();
         f.beside = beside(&atlas.regimes, &setup, shape.reference[0], &f.regimes);
-        Made { id: r.formula.to_lowercase(), own, formula: f }
+        Ok(Made { id: r.formula.to_lowercase(), own, formula: f })
     };
     let mut distinct: Vec<&RegimeReport> = Vec::new();
     for r in &atlas.regimes {
@@ -546,8 +546,8 @@ fn several_freedoms(
             distinct.push(r);
         }
     }
-    let every = |efficiencies| distinct.iter().map(|r| made(r, efficiencies)).collect::<Vec<Made>>();
-    let own = every(request.efficiencies);
+    let every = |efficiencies| distinct.iter().map(|r| made(r, efficiencies)).collect::<Result<Vec<Made>, String>>();
+    let own = every(request.efficiencies)?;
     let asked = |m: &&Made| m.formula.regimes.iter().any(|id| atlas.regimes.iter().any(|r| r.id == *id && wanted(&r)));
     let mut all: Vec<ClosedFormula> = own.iter().filter(asked).map(|m| m.formula.clone()).collect();
     if all.is_empty() {
@@ -555,7 +555,7 @@ fn several_freedoms(
     }
     let name = format!("{}_equilibria", closed_name(train, state));
     // A symbol that stands for one number here and another there makes way for the numbers.
-    let together = together(&name, &own).or_else(|| self::together(&name, &every(Efficiencies::Numbers)));
+    let together = together(&name, &own).or_else(|| self::together(&name, &every(Efficiencies::Numbers).ok()?));
     let together = together.map(Arc::new);
     all.iter_mut().for_each(|f| f.together.clone_from(&together));
     Ok(all)

@@ -6,7 +6,7 @@
 //! regime puts `x = i η` where end p drives, `x = i/η` where end q drives and `x = i` where nothing
 //! moves. For one degree of freedom this is the rule `η = i(x)/i` of virtual work.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -76,6 +76,37 @@ struct Driven {
 
 /// Most terms of a determinant: longer formulas help nobody.
 const MOST_TERMS: usize = 600;
+
+/// Most terms of a sum before those that cancel are gone: two long products without a common factor have no short form.
+const MOST_ADDED: usize = 1 << 11;
+
+/// Sums that stay short.
+#[derive(Default)]
+struct Sums {
+    is_too_long: Cell<bool>,
+}
+
+impl Sums {
+    /// The sum; zero in the place of one that is too long, which [`Self::are_short`] tells before it is used.
+    fn plus(&self, a: &RationalFunction, b: &RationalFunction) -> RationalFunction {
+        a.plus_within(b, MOST_ADDED).unwrap_or_else(|| {
+            self.is_too_long.set(true);
+            RationalFunction::ZERO
+        })
+    }
+
+    /// The sum of many.
+    fn of(&self, all: impl Iterator<Item = RationalFunction>) -> RationalFunction {
+        all.fold(RationalFunction::ZERO, |sum, f| self.plus(&sum, &f))
+    }
+
+    fn are_short(&self) -> Result<(), String> {
+        match self.is_too_long.get() {
+            true => Err(format!("one of them would have more than {MOST_ADDED} terms")),
+            false => Ok(()),
+        }
+    }
+}
 
 /// The symbols of a setup, by number.
 #[derive(Clone, Debug)]
@@ -653,15 +684,16 @@ impl<'s, 't> Shape<'s, 't> {
         // With one freedom every speed is a product of ratios; the difference of such a product and of a symbol for it would
         // be multiplied out.
         let one = setup.base.len() == 1 && setup.independent_torques() == 1;
+        let sums = Sums::default();
         let in_terminals = |node: Option<usize>| -> RationalFunction {
             let Some(node) = node else { return RationalFunction::ZERO };
             match setup.terminals.iter().position(|t| t.node == node) {
                 Some(t) if !one => RationalFunction::symbol(names.speed(t)),
-                _ => (0..setup.base.len()).fold(RationalFunction::ZERO, |sum, b| {
-                    sum.plus(&node_speed(node, b).times(&RationalFunction::symbol(names.speed(setup.base[b]))))
-                }),
+                _ => sums.of((0..setup.base.len())
+                    .map(|b| node_speed(node, b).times(&RationalFunction::symbol(names.speed(setup.base[b]))))),
             }
         };
+        let difference = |a: Option<usize>, b: Option<usize>| sums.plus(&in_terminals(a), &in_terminals(b).negated());
         let known = |node: Option<usize>| node.is_none_or(|n| setup.terminals.iter().any(|t| t.node == n));
         let sigma = (0..k)
             .map(|j| {
@@ -669,11 +701,12 @@ impl<'s, 't> Shape<'s, 't> {
                 let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.c.node(m));
                 // The end that the reader sees the speed of, where there is one.
                 if known(c) && !known(p) && known(q) {
-                    return names.ratio_of(j).times(&in_terminals(q).minus(&in_terminals(c)));
+                    return names.ratio_of(j).times(&difference(q, c));
                 }
-                in_terminals(p).minus(&in_terminals(c))
+                difference(p, c)
             })
             .collect();
+        sums.are_short()?;
         Ok(Self { setup, reference, torque, force, speed, sigma, names, driven: RefCell::default() })
     }
 
@@ -711,8 +744,14 @@ impl<'s, 't> Shape<'s, 't> {
         })
     }
 
-    /// The formulas of a pattern of drivers. `roles`: the sign of the power at each terminal.
-    pub fn formula(&self, pattern: &Pattern, roles: &[i8], ratios: Ratios, efficiencies: Efficiencies) -> Formula {
+    /// The formulas of a pattern of drivers. `roles`: the sign of the power at each terminal. `Err` when they are too long.
+    pub fn formula(
+        &self,
+        pattern: &Pattern,
+        roles: &[i8],
+        ratios: Ratios,
+        efficiencies: Efficiencies,
+    ) -> Result<Formula, String> {
         let setup = self.setup;
         let (m, k) = (setup.terminals.len(), setup.active.len());
         let mut names = self.names.clone();
@@ -762,6 +801,7 @@ impl<'s, 't> Shape<'s, 't> {
         };
         let driven = self.driven(pattern);
         let torque = &driven.torque;
+        let sums = Sums::default();
         let mut references: Vec<RationalFunction> =
             self.reference.iter().map(|&t| RationalFunction::symbol(names.torque(t))).collect();
         let through = setup.link.as_ref().map(|link| (link.ends, pattern[k]));
@@ -774,14 +814,15 @@ impl<'s, 't> Shape<'s, 't> {
             // ρ T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
             let factor = |r: usize| {
                 let part = |t: usize| torque[t][r].times(&RationalFunction::symbol(names.speed(t)));
-                part(a).times(&rho).plus(&part(b))
+                sums.plus(&part(a).times(&rho), &part(b))
             };
-            references[1] = references[0].times(&factor(0)).over(&factor(1)).negated();
+            let factors = [factor(0), factor(1)];
+            sums.are_short()?;
+            references[1] = references[0].times(&factors[0]).over(&factors[1]).negated();
         }
         let d = setup.independent_torques();
-        let sum_over_references = |factors: &[RationalFunction]| {
-            factors.iter().zip(&references).fold(RationalFunction::ZERO, |sum, (f, t)| sum.plus(&f.times(t)))
-        };
+        let sum_over_references =
+            |factors: &[RationalFunction]| sums.of(factors.iter().zip(&references).map(|(f, t)| f.times(t)));
         let torques: Vec<RationalFunction> = torque.iter().map(|r| sum_over_references(r)).collect();
         // With one freedom every speed is a multiple of the reference's.
         let one = setup.base.len() == 1 && d == 1;
@@ -801,14 +842,12 @@ impl<'s, 't> Shape<'s, 't> {
             f.substituted(&value).expect("units are no poles")
         };
         let power = |t: usize| torques[t].times(&speeds[t]);
-        let total =
-            |sign: i8| (0..m).filter(|&t| roles[t] == sign).fold(RationalFunction::ZERO, |sum, t| sum.plus(&power(t)));
-        let (input, output) = (total(1), total(-1));
-        let efficiency = if output.is_zero() || input.is_zero() {
-            RationalFunction::ZERO
-        } else {
-            unit(&output.negated().over(&input))
-        };
+        let total = |sign: i8| sums.of((0..m).filter(|&t| roles[t] == sign).map(power));
+        let output = total(-1);
+        // Where nothing comes out it does not matter what goes in.
+        let input = if output.is_zero() { RationalFunction::ZERO } else { total(1) };
+        sums.are_short()?;
+        let efficiency = if input.is_zero() { RationalFunction::ZERO } else { unit(&output.negated().over(&input)) };
 
         // What the link takes at one end and does not give at the other.
         let lost_on_the_way = through.and_then(|([a, b], forward)| {
@@ -903,22 +942,22 @@ impl<'s, 't> Shape<'s, 't> {
             (None, Some(t)) => Some((false, shares(t).iter().map(RationalFunction::negated).collect())),
             _ => None,
         };
-        Formula {
+        let own = Formula {
             by_loss,
             efficiency: spelt(&efficiency),
             torques: torques.iter().map(&spelt).collect(),
             speeds: (0..m)
                 .map(|t| {
-                    let own = (0..setup.base.len()).fold(RationalFunction::ZERO, |sum, b| {
-                        sum.plus(&self.speed[t][b].times(&RationalFunction::symbol(names.speed(setup.base[b]))))
-                    });
-                    spelt(&own)
+                    let part = |b: usize| self.speed[t][b].times(&RationalFunction::symbol(names.speed(setup.base[b])));
+                    spelt(&sums.of((0..setup.base.len()).map(part)))
                 })
                 .collect(),
             losses: (losses.iter().map(|(_, f, _)| f)).chain(&lost_on_the_way).map(spelt).collect(),
             conditions: distinct,
             names,
-        }
+        };
+        sums.are_short()?;
+        Ok(own)
     }
 }
 

@@ -180,9 +180,9 @@ fn located(point: &Point<'_>, around: &Surroundings, states: &[State]) -> Vec<Lo
         let sign = |t: usize| if setup.is_end(t) { 0 } else { powers[t].sign() };
         let signs: Vec<i8> = (0..powers.len()).map(sign).collect();
         let efficiency = efficiency_at(setup, &point.base, &s.torques);
-        let formula = shape.as_ref().map(|shape| {
-            let f = shape.formula(&s.pattern, &signs, Ratios::Basic, Efficiencies::Basic);
-            f.by_loss(Notation::Text).unwrap_or_else(|| f.names.show(Notation::Text, &f.efficiency))
+        let formula = shape.as_ref().and_then(|shape| {
+            let f = shape.formula(&s.pattern, &signs, Ratios::Basic, Efficiencies::Basic).ok()?;
+            Some(f.by_loss(Notation::Text).unwrap_or_else(|| f.names.show(Notation::Text, &f.efficiency)))
         });
         let speeds = axes.iter().map(|axis| speed_range(point, around, s, axis));
         let torques = (0..point.loads.len()).map(|n| torque_range(point, s, n));

@@ -201,6 +201,86 @@ fn regress_too_large_says_how_large_and_offers_a_place() {
     assert_eq!(place.regimes.len(), 1, "{place:?}");
 }
 
+/// Simple sets in series, each with its ring held, and behind them planets between the frame and the last shaft whose carrier
+/// is driven: nearly locked by themselves.
+fn behind_sets(sets: usize) -> String {
+    let shafts: Vec<String> = (0..sets + 2).map(|k| format!("s{k}")).collect();
+    let last = &shafts[sets + 1];
+    let mut text = format!("format = 1\nname = \"long\"\nmembers = {shafts:?}\nterminals = [\"s0\", \"{last}\"]\n");
+    for k in 0..sets {
+        text += &format!(
+            "[[set]]\nname = \"P{k}\"\ntype = \"simple\"\nsun = {{ member = \"s{k}\", teeth = 30 }}\n\
+             ring = {{ member = \"frame\", teeth = {} }}\ncarrier = \"s{}\"\nbasic_efficiency = 0.98\n",
+            60 + 2 * (k % 7),
+            k + 1
+        );
+    }
+    text + &format!(
+        "[[set]]\nname = \"B\"\ntype = \"stepped\"\nsuns = [ {{ member = \"frame\", teeth = 50, planet_teeth = 20 }}, \
+         {{ member = \"{last}\", teeth = 51, planet_teeth = 21 }} ]\ncarrier = \"s{sets}\"\nbasic_efficiency = 0.9\n"
+    )
+}
+
+/// A train may be longer than all its drivers could be tried: its stages are, one after the other.
+#[test]
+fn a_long_train_is_decided_as_its_stages_are() {
+    // With the frame driving: T_last/T_carrier = −ρ i/(1 − ρ i) with i = 34/35 and ρ = 9/10, over the ratio of the speeds.
+    let stage = 0.9 * (1.0 - 34.0 / 35.0) / (1.0 - 0.9 * 34.0 / 35.0);
+    for sets in [1, 5, 11, 12, 13, 15, 16, 40] {
+        let text = behind_sets(sets);
+        let product: f64 =
+            (0..sets).map(|k| (60 + 2 * (k % 7)) as f64 / 30.0).map(|i| (1.0 + 0.98 * i) / (1.0 + i)).product();
+        let atlas = as_drawn(&text);
+        assert_eq!(atlas.reason, None, "{sets}");
+        let [through, heat] = [["s0"].as_slice(), &["s0", &format!("s{}", sets + 1)]].map(|inputs| {
+            let all: Vec<_> = atlas.regimes.iter().filter(|r| r.inputs == inputs).collect();
+            assert_eq!(all.len(), 2, "{sets}: there and back");
+            all[0]
+        });
+        assert!(heat.all_dissipated && heat.efficiency_range == Some([0.0; 2]), "{sets}");
+        let [efficiency, same] = through.efficiency_range.unwrap();
+        assert!(efficiency == same && (efficiency / (product * stage) - 1.0).abs() < 1e-12, "{sets}: {efficiency}");
+        assert_eq!((atlas.regimes.len(), atlas.formulas.len()), (4, 2), "{sets}");
+        // One torque is carried in two ways, and the other in none.
+        let speed = [("s0".to_owned(), 100.0)];
+        let of = |torque: f64| losses(&text, &speed, &[("s0".to_owned(), torque)]);
+        let found = [of(1.0), of(-1.0)];
+        let mut numbers = [found[0].len(), found[1].len()];
+        numbers.sort_unstable();
+        assert_eq!(numbers, [0, 2], "{sets}");
+    }
+}
+
+/// Two rows of sets that a differential joins: its formulas are sums of two long products.
+#[test]
+fn formulas_that_would_be_too_long_are_not_begun() {
+    let joined = |sets: usize| {
+        let members: Vec<String> =
+            ["a", "b"].iter().flat_map(|row| (0..=sets).map(move |k| format!("{row}{k}"))).collect();
+        let mut text = format!(
+            "format = 1\nname = \"joined\"\nmembers = {:?}\nterminals = [\"a0\", \"b0\", \"out\"]\n",
+            [members, vec!["out".to_owned()]].concat()
+        );
+        for (row, k) in ["a", "b"].iter().flat_map(|row| (0..sets).map(move |k| (row, k))) {
+            text += &format!(
+                "[[set]]\nname = \"{row}{k}\"\ntype = \"simple\"\nsun = {{ member = \"{row}{k}\", teeth = 30 }}\n\
+                 ring = {{ member = \"frame\", teeth = 70 }}\ncarrier = \"{row}{}\"\nbasic_efficiency = 0.98\n",
+                k + 1
+            );
+        }
+        text + &format!(
+            "[[set]]\nname = \"D\"\ntype = \"simple\"\nsun = {{ member = \"a{sets}\", teeth = 30 }}\n\
+             ring = {{ member = \"b{sets}\", teeth = 60 }}\ncarrier = \"out\"\nbasic_efficiency = 0.98\n"
+        )
+    };
+    for sets in [2, 20] {
+        let atlas = as_drawn(&joined(sets));
+        assert_eq!((atlas.reason.as_deref(), atlas.regimes.len()), (None, 16), "{sets}");
+        let is_told = atlas.notes.iter().any(|n| n.contains("closed formulas") && n.contains("terms"));
+        assert_eq!((atlas.formulas.is_empty(), is_told), (sets > 2, sets > 2), "{sets}: {:?}", atlas.notes);
+    }
+}
+
 fn rpm(text: &str) -> Quantity {
     units::parse(text, Dimension::ANGULAR_SPEED).unwrap()
 }
