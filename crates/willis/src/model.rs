@@ -6,7 +6,7 @@
 mod target;
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{Document, Key, Reading, Specification, Train};
@@ -282,20 +282,39 @@ impl Model {
 
     /// The train without its questions, with other values of its file and without a reading of the text; none where more of
     /// it follows from them.
-    fn with_numbers(&self, settings: &[(&Target, String)]) -> Option<Train> {
-        let (train, alone) = self.alone.get_or_init(|| {
+    pub(crate) fn with_numbers(&self, settings: &[(&Target, String)]) -> Option<Train> {
+        let mut train = self.alone().0.clone();
+        self.set_numbers(&mut train, settings)?;
+        Some(train)
+    }
+
+    /// The same in the place of a train of which nobody else knows, and that differs from this one in the values of the same
+    /// settings alone.
+    pub(crate) fn with_other_numbers(
+        &self,
+        mut spare: Arc<Train>,
+        settings: &[(&Target, String)],
+    ) -> Option<Arc<Train>> {
+        self.set_numbers(Arc::get_mut(&mut spare)?, settings)?;
+        Some(spare)
+    }
+
+    fn set_numbers(&self, train: &mut Train, settings: &[(&Target, String)]) -> Option<()> {
+        for (target, value) in settings {
+            let Target::File(key) = target else { continue };
+            let (_, input) = self.alone().1.iter().find(|(own, _)| own == key)?;
+            train.set_input(*input, key.measure, value)?;
+        }
+        Some(())
+    }
+
+    fn alone(&self) -> &(Train, Vec<(Key, usize)>) {
+        self.alone.get_or_init(|| {
             let mut train = self.train.clone().without_questions();
             let inputs = train.inputs_alone().into_iter();
             let keys = inputs.filter_map(|k| Some((self.document().find(&train.inputs[k].path).ok()?, k))).collect();
             (train, keys)
-        });
-        let mut train = train.clone();
-        for (target, value) in settings {
-            let Target::File(key) = target else { continue };
-            let (_, input) = alone.iter().find(|(own, _)| own == key)?;
-            train.set_input(*input, key.measure, value)?;
-        }
-        Some(train)
+        })
     }
 }
 

@@ -245,56 +245,69 @@ impl Equilibrium {
         let groups = linear::groups(&blocks);
         let mut problem =
             Self { columns, rows, elements: c.elements.len(), blocks, groups, parts: vec![], certificate };
-        let mut own = vec![];
-        // A single block is the whole.
-        let parts = match problem.blocks.len() {
-            1 => std::slice::from_ref(&problem),
-            _ => {
-                own = problem.cut();
-                &own[..]
-            }
-        };
-        if !parts.iter().all(Self::determines_forces) {
-            return Err(Unsolvable::Indeterminate);
+        let mut certificates = Vec::with_capacity(problem.blocks.len());
+        for block in &problem.blocks {
+            certificates.push(match problem.blocks.len() {
+                _ if problem.is_certain(block) => Some(Certificate::SpectralRadius),
+                // A single block is the whole.
+                1 => problem.examined()?,
+                _ => problem.part(block).examined()?,
+            });
         }
-        let certificates: Vec<_> = parts.iter().map(Self::certify).collect();
         problem.certificate = match certificates.iter().copied().collect::<Option<Vec<_>>>() {
             Some(all) if all.contains(&Certificate::Determinants) => Certificate::Determinants,
             Some(_) => Certificate::SpectralRadius,
             None => {
-                let undecided = |(part, of): (&Self, &Option<_>)| of.is_none() && part.moving() > MOST_ENUMERATED;
-                let are_few = !parts.iter().zip(&certificates).any(undecided);
-                if own.is_empty() {
-                    own = problem.cut();
-                }
-                for (part, of) in own.iter_mut().zip(certificates) {
-                    part.certificate = of.unwrap_or(Certificate::Enumeration);
-                }
-                problem.parts = own;
-                if are_few { Certificate::Enumeration } else { Certificate::Undecided }
+                let part = |(block, certificate): (&Block, Option<Certificate>)| {
+                    let n = block.rows.len();
+                    let blocks = vec![Block { rows: (0..n).collect(), columns: (0..n).collect() }];
+                    let certificate = certificate.unwrap_or(Certificate::Enumeration);
+                    Self { groups: blocks.clone(), blocks, certificate, ..problem.part(block) }
+                };
+                let parts: Vec<Self> = problem.blocks.iter().zip(certificates).map(part).collect();
+                let is_too_large = |p: &Self| p.certificate == Certificate::Enumeration && p.moving() > MOST_ENUMERATED;
+                let certificate =
+                    if parts.iter().any(is_too_large) { Certificate::Undecided } else { Certificate::Enumeration };
+                problem.parts = parts;
+                certificate
             }
         };
         Ok(problem)
     }
 
-    /// The diagonal blocks as problems of their own.
-    fn cut(&self) -> Vec<Self> {
-        let mut row_in = vec![None; self.rows.len()];
-        let part = |block: &Block| {
-            block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
-            let columns = block.columns.iter().map(|&j| {
-                let c = &self.columns[j];
-                let inside = c.entries.iter().filter_map(|(r, a, b)| Some((row_in[*r]?, a.clone(), b.clone())));
-                let floats = c.floats.iter().filter_map(|&(r, a, b)| Some((row_in[r]?, a, b)));
-                Column { entries: inside.collect(), floats: floats.collect(), rho: c.rho.clone(), ..*c }
-            });
-            let columns = columns.collect();
-            block.rows.iter().for_each(|&row| row_in[row] = None);
-            let n = block.rows.len();
-            let blocks = vec![Block { rows: (0..n).collect(), columns: (0..n).collect() }];
-            Self { columns, rows: block.rows.clone(), groups: blocks.clone(), blocks, parts: vec![], ..*self }
-        };
-        self.blocks.iter().map(part).collect()
+    /// Whether a block is a single equation whose coefficient is far from zero for every ρ between its bounds.
+    fn is_certain(&self, block: &Block) -> bool {
+        let (&[row], &[column]) = (&block.rows[..], &block.columns[..]) else { return false };
+        let column = &self.columns[column];
+        let Some(&(_, constant, slope)) = column.floats.iter().find(|e| e.0 == row) else { return false };
+        let [low, high] = column.rho_floats;
+        let (middle, half) = ((low + high) / 2.0, (high - low).abs() / 2.0);
+        let least = (constant + slope * middle).abs() * 0.99 - (slope * half).abs();
+        least > 1e-6 * (constant.abs() + (slope * middle).abs())
+    }
+
+    /// The certificate of a block; none where there is none. An error where no choice of drivers determines its forces.
+    fn examined(&self) -> Result<Option<Certificate>, Unsolvable> {
+        if self.determines_forces() { Ok(self.certify()) } else { Err(Unsolvable::Indeterminate) }
+    }
+
+    /// A diagonal block as a problem of its own, without blocks of its own.
+    fn part(&self, block: &Block) -> Self {
+        let place = |row: &usize| block.rows.iter().position(|r| r == row);
+        let columns = block.columns.iter().map(|&j| {
+            let c = &self.columns[j];
+            let inside = c.entries.iter().filter_map(|(r, a, b)| Some((place(r)?, a.clone(), b.clone())));
+            let floats = c.floats.iter().filter_map(|(r, a, b)| Some((place(r)?, *a, *b)));
+            Column { entries: inside.collect(), floats: floats.collect(), rho: c.rho.clone(), ..*c }
+        });
+        Self {
+            columns: columns.collect(),
+            rows: block.rows.clone(),
+            blocks: vec![],
+            groups: vec![],
+            parts: vec![],
+            ..*self
+        }
     }
 
     /// Whether some choice of drivers determines the forces. Without friction they may not be determined all the same:
@@ -699,25 +712,26 @@ impl Equilibrium {
 pub(crate) fn carrying(c: &Configuration<'_>, open: &[usize], loaded: &[usize]) -> (Vec<bool>, Vec<bool>) {
     let mut row_alive: Vec<bool> = (0..c.nodes).map(|n| !open.contains(&n)).collect();
     let mut alive = vec![true; c.elements.len()];
+    // How many elements touch each node, and the last of them.
+    let mut touching = vec![(0usize, 0usize); c.nodes];
     loop {
-        let mut touching: Vec<Vec<usize>> = vec![vec![]; c.nodes];
+        touching.fill((0, 0));
         for (j, e) in c.elements.iter().enumerate().filter(|(j, _)| alive[*j]) {
-            let mut nodes: Vec<Node> = vec![c.node(e.p), c.node(e.q), c.node(e.carrier)];
-            nodes.sort_unstable();
-            nodes.dedup();
-            nodes.into_iter().flatten().for_each(|n| touching[n].push(j));
+            let nodes: [Node; 3] = [c.node(e.p), c.node(e.q), c.node(e.carrier)];
+            let is_first = |k: &usize| !nodes[..*k].contains(&nodes[*k]);
+            (0..3).filter(is_first).filter_map(|k| nodes[k]).for_each(|n| touching[n] = (touching[n].0 + 1, j));
         }
         let mut changed = false;
         for n in 0..c.nodes {
             if !row_alive[n] || loaded.contains(&n) {
                 continue;
             }
-            match touching[n][..] {
-                [] => {
+            match touching[n] {
+                (0, _) => {
                     row_alive[n] = false;
                     changed = true;
                 }
-                [j] if alive[j] && keeps_sign(c, j, n) => {
+                (1, j) if alive[j] && keeps_sign(c, j, n) => {
                     alive[j] = false;
                     row_alive[n] = false;
                     changed = true;

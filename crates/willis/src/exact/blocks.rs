@@ -36,8 +36,11 @@ pub(crate) fn is_odd(blocks: &[Block]) -> bool {
 pub(crate) fn blocks(rows_of: &[Vec<usize>]) -> Option<Vec<Block>> {
     let n = rows_of.len();
     let mut column_of = vec![None; n];
+    // By which column each row was tried last.
+    let mut tried_by = vec![n; n];
+    let mut path = Vec::with_capacity(n);
     for start in 0..n {
-        match_column(start, rows_of, &mut column_of).then_some(())?;
+        match_column(start, rows_of, &mut column_of, &mut tried_by, &mut path).then_some(())?;
     }
     let column_of: Vec<usize> = column_of.into_iter().collect::<Option<_>>()?;
     // The equation that was matched with an unknown, and the other unknowns in it.
@@ -52,17 +55,23 @@ pub(crate) fn blocks(rows_of: &[Vec<usize>]) -> Option<Vec<Block>> {
 }
 
 /// Finds a row for a column, moving others away on an augmenting path; without recursion, as trains may be long.
-fn match_column(start: usize, rows_of: &[Vec<usize>], column_of: &mut [Option<usize>]) -> bool {
-    let mut seen = vec![false; column_of.len()];
+fn match_column(
+    start: usize,
+    rows_of: &[Vec<usize>],
+    column_of: &mut [Option<usize>],
+    tried_by: &mut [usize],
+    path: &mut Vec<(usize, usize)>,
+) -> bool {
     // The column at which the path stands, and how many of its rows were tried; the row that led on from it is the last.
-    let mut path: Vec<(usize, usize)> = vec![(start, 0)];
+    path.clear();
+    path.push((start, 0));
     while let Some((column, tried)) = path.last_mut() {
         let Some(&row) = rows_of[*column].get(*tried) else {
             path.pop();
             continue;
         };
         *tried += 1;
-        if std::mem::replace(&mut seen[row], true) {
+        if std::mem::replace(&mut tried_by[row], start) == start {
             continue;
         }
         match column_of[row] {
@@ -81,12 +90,12 @@ fn components(needs: &[Vec<usize>]) -> Vec<Vec<usize>> {
     const UNSEEN: usize = usize::MAX;
     let n = needs.len();
     let (mut order, mut low, mut done) = (vec![UNSEEN; n], vec![UNSEEN; n], vec![false; n]);
-    let (mut open, mut all, mut count) = (vec![], vec![], 0);
+    let (mut open, mut path, mut all, mut count) = (vec![], vec![], vec![], 0);
     for start in 0..n {
         if order[start] != UNSEEN {
             continue;
         }
-        let mut path = vec![(start, 0)];
+        path.push((start, 0));
         while let Some((at, next)) = path.last_mut() {
             let at = *at;
             if *next == 0 {

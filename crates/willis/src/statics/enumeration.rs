@@ -371,9 +371,10 @@ mod tests {
             }
             let n = blocks.columns.len();
             let all = Block { rows: (0..n).collect(), columns: (0..n).collect() };
-            let mut whole =
-                Equilibrium { blocks: vec![all.clone()], groups: vec![all], parts: vec![], ..blocks.clone() };
-            whole.parts = whole.cut();
+            // One part, which is the whole.
+            let certificate = Certificate::Enumeration;
+            let whole = Equilibrium { blocks: vec![all.clone()], groups: vec![all], ..blocks.clone() };
+            let whole = Equilibrium { parts: vec![Equilibrium { certificate, ..whole.clone() }], ..whole };
             let mut loads = vec![Rational::ZERO; count];
             for node in nodes {
                 // Some have no load of their own.

@@ -71,11 +71,21 @@ pub struct PointSetup<'s> {
 /// Trains that differ in quantities of their file, kept for the next point.
 #[derive(Debug, Default)]
 pub struct TrainCache {
-    known: HashMap<Settings, Result<Arc<Train>, Diagnostics>>,
+    known: HashMap<Settings, Made>,
+    /// Trains that nobody asks for any more, to be given other numbers.
+    spare: Vec<(Settings, Arc<Train>)>,
     /// How the speeds of a train follow from those that are prescribed, for the last such question.
     transfer: Option<(Tied, Transfer)>,
     /// Values that were read: an axis says the same ones again and again.
     read: HashMap<String, (Dimension, Quantity)>,
+}
+
+/// A train with other values of its file, or why there is none.
+#[derive(Clone, Debug)]
+struct Made {
+    train: Result<Arc<Train>, Diagnostics>,
+    /// Whether it differs from others with the same settings in those numbers alone.
+    by_numbers: bool,
 }
 
 /// A train, and what of it is held and prescribed.
@@ -97,6 +107,20 @@ impl Tied {
 }
 
 impl TrainCache {
+    /// Forgets all trains but those that can be given other numbers.
+    fn spare_all(&mut self) {
+        self.spare.clear();
+        let made = self.known.drain().filter(|(_, made)| made.by_numbers);
+        self.spare.extend(made.filter_map(|(key, made)| Some((key, made.train.ok()?))));
+    }
+
+    /// One that differs from the train asked for in the values of these settings alone.
+    fn spare(&mut self, key: &Settings) -> Option<Arc<Train>> {
+        let (own, _) = self.spare.last()?;
+        let are_alike = own.len() == key.len() && own.iter().zip(key).all(|(a, b)| a.0 == b.0);
+        are_alike.then(|| self.spare.pop()).flatten().map(|(_, train)| train)
+    }
+
     /// A value with a unit.
     fn quantity(&mut self, text: &str, dimension: Dimension) -> Result<Quantity, Diagnostics> {
         if let Some((_, known)) = self.read.get(text).filter(|(of, _)| *of == dimension) {
@@ -322,19 +346,30 @@ impl<'s> PointSetup<'s> {
             settings.iter().filter(|s| s.0.is_of_train()).map(|(t, v)| (*t, v.clone())).collect();
         let key: Settings = of_train.iter().map(|(t, v)| ((*t).clone(), v.clone())).collect();
         if let Some(known) = trains.known.get(&key) {
-            return known.clone();
+            return known.train.clone();
         }
         if trains.known.len() >= MOST_TRAINS {
-            trains.known.clear();
+            trains.spare_all();
+        }
+        let made = self.make(&key, &of_train, trains);
+        let train = made.train.clone();
+        trains.known.insert(key, made);
+        train
+    }
+
+    fn make(&self, key: &Settings, settings: &[(&Target, String)], trains: &mut TrainCache) -> Made {
+        if settings.iter().all(|s| matches!(s.0, Target::File(_))) {
+            let spare = trains.spare(key).and_then(|spare| self.model.with_other_numbers(spare, settings));
+            if let Some(train) = spare.or_else(|| self.model.with_numbers(settings).map(Arc::new)) {
+                return Made { train: Ok(train), by_numbers: true };
+            }
         }
         let leads_into_a_question = |s: &(&Target, String)| matches!(s.0, Target::File(key) if key.is_of_a_question());
-        let document = match of_train.iter().any(leads_into_a_question) {
+        let document = match settings.iter().any(leads_into_a_question) {
             true => self.model.document(),
             false => self.alone(),
         };
-        let train = self.model.train_with(document, &of_train).map(Arc::new);
-        trains.known.insert(key, train.clone());
-        train
+        Made { train: self.model.train_with(document, settings).map(Arc::new), by_numbers: false }
     }
 
     /// The operating point on a train.

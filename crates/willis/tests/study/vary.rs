@@ -116,3 +116,52 @@ fn one_after_the_other(name: &str, trains: &[(Arc<Train>, Operation)]) {
     });
     assert_eq!(k, points.len());
 }
+
+/// More trains than are kept, in values that are set where others were before: each as if it were the only one.
+#[test]
+fn a_train_given_other_numbers_is_a_new_one() {
+    let mut compared = 0;
+    for (name, text) in examples().into_iter().filter(|(_, text)| text.contains("roughness") || text.contains("[heat]"))
+    {
+        let Ok(model) = Model::from_toml(&text) else { continue };
+        let Ok(question) = PointSetup::new(&model, None, None, Hold::AsGiven) else { continue };
+        let alone = ["roughness", "radial_load", "axial_load", "efficiency"];
+        let quantities = model.document().quantities();
+        let given: Vec<(Target, f64, String)> = (quantities.iter())
+            .filter(|(path, _)| alone.iter().any(|key| path.contains(key)))
+            .filter_map(|(path, key)| {
+                let value = model.document().value(key)?;
+                let (number, unit) = parts(&value)?;
+                Some((Target::parse(path, &model).ok()?, number, unit.to_owned()))
+            })
+            .take(5)
+            .collect();
+        if given.len() < 2 || question.base().loads.is_empty() {
+            continue;
+        }
+        // Now and then a value that the file may not have, and fewer values than before.
+        let settings = |k: usize| -> Vec<(&Target, String)> {
+            let factor =
+                |j: usize| if k % 31 == 30 && j == 1 { -1.0 } else { 1.0 - 0.0003 * ((k * (j + 3)) % 101) as f64 };
+            let own = given.iter().enumerate().take(if k % 17 == 5 { 1 } else { given.len() });
+            own.map(|(j, (target, number, unit))| {
+                (target, format!("{:.9} {unit}", number * factor(j)).trim().to_owned())
+            })
+            .collect()
+        };
+        let (mut trains, mut k) = (TrainCache::default(), 0);
+        PointAnswers::each((0..200).map(|k| question.at(&settings(k), &mut trains)), false, |answer, asked| {
+            match question.at(&settings(k), &mut TrainCache::default()) {
+                Ok((train, operation)) => {
+                    assert!(asked.is_some(), "{name} {k}");
+                    assert_eq!(numbers(&answer), numbers(&PointAnswer::of(&train, &operation)), "{name} {k}");
+                    compared += 1;
+                }
+                Err(_) => assert!(asked.is_none(), "{name} {k}"),
+            }
+            k += 1;
+        });
+        assert_eq!(k, 200);
+    }
+    assert!(compared > 500, "{compared}");
+}
