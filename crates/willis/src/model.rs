@@ -250,38 +250,32 @@ impl Model {
         self.reading.locate(&self.text, diagnostics);
     }
 
-    /// The train of a document with other values.
+    /// The train of a document with other values and laws.
     ///
     /// # Errors
     /// What is wrong with it then.
     pub(crate) fn train_with(&self, document: &Document, settings: &[(&Target, String)]) -> Result<Train, Diagnostics> {
-        let mut train = match self.with_numbers(settings) {
-            Some(train) => train,
-            None => {
-                let mut document = document.clone();
-                for (target, value) in settings {
-                    let Target::File(key) = target else { continue };
-                    document.set(key, value).map_err(|what| one(bad_value(value, &what)))?;
-                }
-                let Reading { train, diagnostics, .. } =
-                    Train::read_toml_with(&document.text(), &mut |name| self.table(name));
-                let mut train = train.ok_or_else(|| elsewhere(diagnostics))?;
-                for (family, law) in &self.laws {
-                    train = train.with_law(family, law)?;
-                }
-                train.with_speed_tolerance(self.speed_tolerance)?
-            }
-        };
+        let mut document = document.clone();
+        for (target, value) in settings {
+            let Target::File(key) = target else { continue };
+            document.set(key, value).map_err(|what| one(bad_value(value, &what)))?;
+        }
+        let Reading { train, diagnostics, .. } = Train::read_toml_with(&document.text(), &mut |name| self.table(name));
+        let mut train = train.ok_or_else(|| elsewhere(diagnostics))?;
+        for (family, law) in &self.laws {
+            train.set_law(family, law)?;
+        }
+        train = train.with_speed_tolerance(self.speed_tolerance)?;
         for (target, value) in settings {
             if let Target::Law(family) = target {
-                train = train.with_law(family, value)?;
+                train.set_law(family, value)?;
             }
         }
         Ok(train)
     }
 
-    /// The train without its questions, with other values of its file and without a reading of the text; none where more of
-    /// it follows from them.
+    /// The train without its questions, with other values of its file and laws, and without a reading of the text; none where
+    /// more of it follows from them.
     pub(crate) fn with_numbers(&self, settings: &[(&Target, String)]) -> Option<Train> {
         let mut train = self.alone().0.clone();
         self.set_numbers(&mut train, settings)?;
@@ -295,15 +289,22 @@ impl Model {
         mut spare: Arc<Train>,
         settings: &[(&Target, String)],
     ) -> Option<Arc<Train>> {
-        self.set_numbers(Arc::get_mut(&mut spare)?, settings)?;
+        let own = Arc::get_mut(&mut spare)?;
+        own.laws = self.alone().0.laws;
+        self.set_numbers(own, settings)?;
         Some(spare)
     }
 
     fn set_numbers(&self, train: &mut Train, settings: &[(&Target, String)]) -> Option<()> {
         for (target, value) in settings {
-            let Target::File(key) = target else { continue };
-            let (_, input) = self.alone().1.iter().find(|(own, _)| own == key)?;
-            train.set_input(*input, key.measure, value)?;
+            match target {
+                Target::File(key) => {
+                    let (_, input) = self.alone().1.iter().find(|(own, _)| own == key)?;
+                    train.set_input(*input, key.measure, value)?;
+                }
+                Target::Law(family) => train.set_law(family, value).ok()?,
+                _ => {}
+            }
         }
         Some(())
     }

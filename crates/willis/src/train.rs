@@ -803,12 +803,15 @@ impl Train {
     /// If there is no such family or law, or if teeth are computed and the law needs an oil that the
     /// train does not have.
     pub fn with_law(mut self, family: &str, law: &str) -> Result<Self, Diagnostics> {
+        self.set_law(family, law)?;
+        Ok(self)
+    }
+
+    /// The same in place: nothing else changes.
+    pub(crate) fn set_law(&mut self, family: &str, law: &str) -> Result<(), Diagnostics> {
         self.laws.choose(family, law).map_err(|d| [*d].into_iter().collect::<Diagnostics>())?;
         let dry = self.lubrication.is_none() && self.meshes.iter().any(|m| m.computed);
-        match self.laws.without_oil().filter(|_| dry) {
-            Some(d) => Err([d].into_iter().collect()),
-            None => Ok(self),
-        }
+        self.laws.without_oil().filter(|_| dry).map_or(Ok(()), |d| Err([d].into_iter().collect()))
     }
 
     /// The train alone, without what its file asks of it.

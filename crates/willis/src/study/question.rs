@@ -69,8 +69,10 @@ pub struct PointSetup<'s> {
 }
 
 /// Trains that differ in quantities of their file, kept for the next point.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct TrainCache {
+    /// How many are kept.
+    most: usize,
     known: HashMap<Settings, Made>,
     /// Trains that nobody asks for any more, to be given other numbers.
     spare: Vec<(Settings, Arc<Train>)>,
@@ -106,7 +108,18 @@ impl Tied {
     }
 }
 
+impl Default for TrainCache {
+    fn default() -> Self {
+        Self { most: MOST_TRAINS, known: HashMap::new(), spare: vec![], transfer: None, read: HashMap::new() }
+    }
+}
+
 impl TrainCache {
+    /// For points of which hardly one has the values of another.
+    pub(crate) fn of_samples() -> Self {
+        Self { most: 4, ..Self::default() }
+    }
+
     /// Forgets all trains but those that can be given other numbers.
     fn spare_all(&mut self) {
         self.spare.clear();
@@ -348,7 +361,7 @@ impl<'s> PointSetup<'s> {
         if let Some(known) = trains.known.get(&key) {
             return known.train.clone();
         }
-        if trains.known.len() >= MOST_TRAINS {
+        if trains.known.len() >= trains.most {
             trains.spare_all();
         }
         let made = self.make(&key, &of_train, trains);
@@ -358,11 +371,9 @@ impl<'s> PointSetup<'s> {
     }
 
     fn make(&self, key: &Settings, settings: &[(&Target, String)], trains: &mut TrainCache) -> Made {
-        if settings.iter().all(|s| matches!(s.0, Target::File(_))) {
-            let spare = trains.spare(key).and_then(|spare| self.model.with_other_numbers(spare, settings));
-            if let Some(train) = spare.or_else(|| self.model.with_numbers(settings).map(Arc::new)) {
-                return Made { train: Ok(train), by_numbers: true };
-            }
+        let spare = trains.spare(key).and_then(|spare| self.model.with_other_numbers(spare, settings));
+        if let Some(train) = spare.or_else(|| self.model.with_numbers(settings).map(Arc::new)) {
+            return Made { train: Ok(train), by_numbers: true };
         }
         let leads_into_a_question = |s: &(&Target, String)| matches!(s.0, Target::File(key) if key.is_of_a_question());
         let document = match settings.iter().any(leads_into_a_question) {

@@ -532,14 +532,15 @@ impl<'s> UncertaintyPlan<'s> {
     /// # Errors
     /// The work was cancelled.
     pub fn evaluate_within(&self, points: Range<usize>, work: &dyn Work) -> Result<SampleResult, Cancelled> {
-        /// Points of a piece: whole groups, about so many points.
-        const PIECE: usize = 64;
-        let piece = self.group() * (PIECE / self.group()).max(1);
+        // Whole groups. The first point of a piece is answered the long way, so there are not too many pieces; and enough for
+        // every processor.
+        let piece = (points.len() / 32).clamp(64, 512);
+        let piece = self.group() * (piece / self.group()).max(1);
         work.begin("points", points.len() as u64);
         let parts = work::map(work, points.len().div_ceil(piece), |k| {
             let from = points.start + k * piece;
             let own = from..(from + piece).min(points.end);
-            let part = self.evaluate(own.clone(), &mut TrainCache::default());
+            let part = self.evaluate(own.clone(), &mut TrainCache::of_samples());
             work.advance(own.len() as u64);
             part
         })?;

@@ -139,7 +139,9 @@ fn a_train_given_other_numbers_is_a_new_one() {
         if given.len() < 2 || question.base().loads.is_empty() {
             continue;
         }
-        // Now and then a value that the file may not have, and fewer values than before.
+        let law = Target::parse("law.film", &model).unwrap();
+        let laws: Vec<&str> = losses::entries().iter().filter(|e| e.family == "film").map(|e| e.id).collect();
+        // Now and then a value that the file may not have, fewer values than before, and laws in turns.
         let settings = |k: usize| -> Vec<(&Target, String)> {
             let factor =
                 |j: usize| if k % 31 == 30 && j == 1 { -1.0 } else { 1.0 - 0.0003 * ((k * (j + 3)) % 101) as f64 };
@@ -147,6 +149,7 @@ fn a_train_given_other_numbers_is_a_new_one() {
             own.map(|(j, (target, number, unit))| {
                 (target, format!("{:.9} {unit}", number * factor(j)).trim().to_owned())
             })
+            .chain((k % 13 > 3).then(|| (&law, laws[k % laws.len()].to_owned())))
             .collect()
         };
         let (mut trains, mut k) = (TrainCache::default(), 0);
