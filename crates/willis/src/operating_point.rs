@@ -586,7 +586,7 @@ impl<'t, R: Real> Physics<'t, R> {
     }
 
     /// What no load changes; of the meshes only the speeds count.
-    fn without_load(&self, speeds: &[R], meshes: &[MeshFlow<R>], known: &dyn Fn(MemberId) -> bool) -> Idle<R> {
+    pub fn without_load(&self, speeds: &[R], meshes: &[MeshFlow<R>], known: &dyn Fn(MemberId) -> bool) -> Idle<R> {
         let bearings = match self.oil {
             Some(_) => (0..self.train.bearings.len()).map(|k| self.turning(k, speeds)).collect(),
             None => vec![],
@@ -661,7 +661,7 @@ impl<'t, R: Real> Physics<'t, R> {
     }
 
     /// The losses for torques and speeds, where it is known what [no load changes](Self::without_load).
-    fn evaluate_with(
+    pub fn evaluate_with(
         &self,
         speeds: &[R],
         meshes: &[MeshFlow<R>],

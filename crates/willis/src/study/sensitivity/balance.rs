@@ -131,8 +131,9 @@ pub(super) fn powers(
     let mut asked = asked(point, &speeds, &forces, &eta);
     let (mut last, mut q) = (f64::INFINITY, 0.0f64);
     let mut old: Option<Vec<f64>> = None;
+    let idle = physics.without_load(&speeds, &meshes, &known);
     for rounds in 1..=MOST_ROUNDS {
-        let step: Step<Dual64> = physics.evaluate(&speeds, &meshes, &known);
+        let step: Step<Dual64> = physics.evaluate_with(&speeds, &meshes, &known, &idle);
         let efficiencies = step.efficiencies(train, &given);
         let mut drags = step.drags.clone();
         for (k, v) in train.variators.iter().enumerate().filter(|(_, v)| v.has_bus()) {
