@@ -50,7 +50,8 @@ pub enum Certificate {
     Determinants,
     /// No certificate for every load (determinants of both signs or zero: for some load there is no
     /// or more than one solution; or too many boxes to look at). What is reported for the load at
-    /// hand was found by trying every sign pattern, of one block of the equations after the other.
+    /// hand was found by trying every sign pattern, of one block of the equations after the other; where
+    /// that takes too many for a load, the answer to it is undecided.
     Enumeration,
     /// Too many interacting elements to decide; a solution was found by pivoting.
     Undecided,
@@ -168,7 +169,7 @@ pub(crate) struct Equilibrium {
     blocks: Vec<Block>,
     /// What is solved together in floating point, in this order: those blocks of a long train, else everything.
     groups: Vec<Block>,
-    /// Those blocks as problems of their own, where one of them is not certified.
+    /// The diagonal blocks as problems of their own; none where all are certified, or one cannot be decided.
     parts: Vec<Equilibrium>,
     certificate: Certificate,
 }
@@ -266,10 +267,12 @@ impl Equilibrium {
                 };
                 let parts: Vec<Self> = problem.blocks.iter().zip(certificates).map(part).collect();
                 let is_too_large = |p: &Self| p.certificate == Certificate::Enumeration && p.moving() > MOST_ENUMERATED;
-                let certificate =
-                    if parts.iter().any(is_too_large) { Certificate::Undecided } else { Certificate::Enumeration };
-                problem.parts = parts;
-                certificate
+                if parts.iter().any(is_too_large) {
+                    Certificate::Undecided
+                } else {
+                    problem.parts = parts;
+                    Certificate::Enumeration
+                }
             }
         };
         Ok(problem)
@@ -462,6 +465,12 @@ impl Equilibrium {
     fn is_moving(&self, j: usize) -> bool {
         let [p_drives, q_drives] = &self.columns[j].rho;
         p_drives != q_drives
+    }
+
+    /// Most elements of a block without certificate for which all patterns of drivers are tried.
+    pub(crate) fn most_tried(&self) -> usize {
+        let tried = self.parts.iter().filter(|p| !p.certificate.unique_for_every_load());
+        tried.map(Self::moving).max().unwrap_or(0)
     }
 
     /// Elements whose sign matters.

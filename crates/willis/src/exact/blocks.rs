@@ -7,7 +7,7 @@
 //! closed formula is a product of short factors.
 
 /// Rows and columns of a diagonal block.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Block {
     pub rows: Vec<usize>,
     pub columns: Vec<usize>,

@@ -123,8 +123,8 @@ fn names(setup: &Setup<'_>, of: impl IntoIterator<Item = usize>) -> Vec<String> 
 fn note_peculiarities(atlas: &mut Atlas, setup: &Setup<'_>, cells: &Cells) {
     if cells.singular {
         atlas.notes.push(
-            "for some drivers the train lies exactly on a self-locking threshold: there a whole range of torques balances; \
-             those cells are not listed"
+            "for some drivers the train lies exactly on a self-locking threshold: there a whole range of torques balances, \
+             which is not listed"
                 .into(),
         );
     }
@@ -257,8 +257,8 @@ struct Formulas<'s, 't> {
 struct Driven {
     pattern: Pattern,
     powers: Vec<i8>,
-    /// None where none can be given.
-    own: Option<Formula>,
+    /// Or why it is not given; none where none is.
+    own: Option<Result<Formula, String>>,
 }
 
 impl<'s, 't> Formulas<'s, 't> {
@@ -281,16 +281,8 @@ impl<'s, 't> Formulas<'s, 't> {
     fn id_of(&mut self, pattern: &Pattern, powers: &[i8]) -> String {
         let known = self.all.iter().position(|d| d.pattern == *pattern && d.powers == powers);
         let at = known.unwrap_or_else(|| {
-            let own = match &self.shape {
-                Ok(shape) => match shape.formula(pattern, powers, Ratios::Basic, Efficiencies::Basic) {
-                    Ok(own) => Some(own),
-                    Err(why) => {
-                        self.shape = Err(why);
-                        None
-                    }
-                },
-                Err(_) => None,
-            };
+            let shape = self.shape.as_ref().ok();
+            let own = shape.map(|s| s.formula(pattern, powers, Ratios::Basic, Efficiencies::Basic));
             self.all.push(Driven { pattern: pattern.clone(), powers: powers.to_vec(), own });
             self.all.len() - 1
         });
@@ -309,7 +301,10 @@ impl<'s, 't> Formulas<'s, 't> {
         for (n, driven) in self.all.iter().enumerate() {
             let id = formula_id(n);
             let regimes: Vec<String> = atlas.regimes.iter().filter(|r| r.formula == id).map(|r| r.id.clone()).collect();
-            atlas.formulas.push(formula_report(shape, id, driven, regimes));
+            match driven.own.as_ref().expect("made with the shape") {
+                Ok(own) => atlas.formulas.push(formula_report(shape, id, driven, own, regimes)),
+                Err(why) => atlas.notes.push(format!("no closed formula {id} ({}): {why}", regimes.join(", "))),
+            }
         }
         // Placeholders have no meaning, and teeth are in no basic formula.
         let shown = shape.names.all().filter(|i| !i.meaning.is_empty() && i.kind != SymbolKind::Teeth);
@@ -716,10 +711,14 @@ pub(crate) fn arrow(inputs: &[String], outputs: &[String]) -> String {
     }
 }
 
-fn formula_report(shape: &Shape<'_, '_>, id: String, driven: &Driven, regimes: Vec<String>) -> FormulaReport {
+fn formula_report(
+    shape: &Shape<'_, '_>,
+    id: String,
+    Driven { pattern, powers, .. }: &Driven,
+    own: &Formula,
+    regimes: Vec<String>,
+) -> FormulaReport {
     let setup = shape.setup;
-    let Driven { pattern, powers, own } = driven;
-    let own = own.as_ref().expect("made with the shape");
     let of = |sign: i8| names(setup, (0..powers.len()).filter(|&t| powers[t] == sign));
     let show = |f: &RationalFunction| own.names.show(Notation::Text, f);
     let driving: Vec<String> = drivers(setup, pattern)

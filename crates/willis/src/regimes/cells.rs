@@ -85,8 +85,8 @@ pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
         }
         let (mut cells, odd) = setup.torque_cells(&regions[k].point).map_err(|n| {
             too_large(format!(
-                "up to {} regions of speed, and in some of them 2^{n} patterns of drivers would have to be tried (at most \
-                 2^{MOST_TRIED})",
+                "up to {} regions of speed, and in some of them {n} elements without proof that their drivers are the only \
+                 ones (at most {MOST_TRIED} that load each other are tried)",
                 regions.len()
             ))
         })?;

@@ -546,16 +546,22 @@ fn several_freedoms(
             distinct.push(r);
         }
     }
-    let every = |efficiencies| distinct.iter().map(|r| made(r, efficiencies)).collect::<Result<Vec<Made>, String>>();
-    let own = every(request.efficiencies)?;
-    let asked = |m: &&Made| m.formula.regimes.iter().any(|id| atlas.regimes.iter().any(|r| r.id == *id && wanted(&r)));
-    let mut all: Vec<ClosedFormula> = own.iter().filter(asked).map(|m| m.formula.clone()).collect();
+    let every = |efficiencies| distinct.iter().map(|r| made(r, efficiencies)).collect::<Vec<Result<Made, String>>>();
+    let own = every(request.efficiencies);
+    let mut all: Vec<ClosedFormula> = Vec::new();
+    for (r, own) in distinct.iter().zip(&own) {
+        if atlas.regimes.iter().any(|o| o.formula == r.formula && wanted(&o)) {
+            all.push(own.as_ref().map_err(Clone::clone)?.formula.clone());
+        }
+    }
     if all.is_empty() {
         return Err(format!("no regime has the roles {}; `willis regimes` lists those there are", arrow(&from, &to)));
     }
     let name = format!("{}_equilibria", closed_name(train, state));
+    let together =
+        |own: Vec<Result<Made, String>>| together(&name, &own.into_iter().collect::<Result<Vec<_>, _>>().ok()?);
     // A symbol that stands for one number here and another there makes way for the numbers.
-    let together = together(&name, &own).or_else(|| self::together(&name, &every(Efficiencies::Numbers).ok()?));
+    let together = together(own).or_else(|| together(every(Efficiencies::Numbers)));
     let together = together.map(Arc::new);
     all.iter_mut().for_each(|f| f.together.clone_from(&together));
     Ok(all)

@@ -102,7 +102,7 @@ impl Sums {
 
     fn are_short(&self) -> Result<(), String> {
         match self.is_too_long.get() {
-            true => Err(format!("one of them would have more than {MOST_ADDED} terms")),
+            true => Err(format!("a part, multiplied out, may have more than {MOST_ADDED} terms")),
             false => Ok(()),
         }
     }
@@ -824,6 +824,7 @@ impl<'s, 't> Shape<'s, 't> {
         let sum_over_references =
             |factors: &[RationalFunction]| sums.of(factors.iter().zip(&references).map(|(f, t)| f.times(t)));
         let torques: Vec<RationalFunction> = torque.iter().map(|r| sum_over_references(r)).collect();
+        sums.are_short()?;
         // With one freedom every speed is a multiple of the reference's.
         let one = setup.base.len() == 1 && d == 1;
         let speeds: Vec<RationalFunction> = (0..m)

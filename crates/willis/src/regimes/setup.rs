@@ -611,6 +611,9 @@ impl<'t> Setup<'t> {
         for t in 0..self.terminals.len() {
             // Where they do not settle the others, torques on this terminal are none, whatever drives.
             let Ok(problem) = self.equilibrium(base, &[t]) else { continue };
+            if problem.most_tried() > MOST_TRIED as usize {
+                return None;
+            }
             for sign in [1, -1] {
                 let mut loads = vec![Rational::ZERO; self.c.nodes];
                 loads[self.terminals[t].node] = Rational::from(sign);
@@ -621,10 +624,11 @@ impl<'t> Setup<'t> {
                 singular |= !answer.stretches.is_empty();
                 for solution in &answer.solutions {
                     let pattern = self.pattern_of(base, solution);
-                    let Some(torques) = self.torques_for(&pattern, &[(t, Rational::from(sign))]) else {
-                        singular = true;
-                        continue;
+                    let torque = |u: usize| match u == t {
+                        true => Some(Rational::from(sign)),
+                        false => problem.exact_torque(&self.c, solution, &loads, self.terminals[u].node),
                     };
+                    let torques: Vec<Rational> = (0..self.terminals.len()).map(torque).collect::<Option<_>>()?;
                     let signs: Vec<i8> = torques.iter().map(Rational::sign).collect();
                     if all.iter().all(|c| c.pattern != pattern || c.signs != signs) {
                         all.push(TorqueCell { pattern, signs, torques });

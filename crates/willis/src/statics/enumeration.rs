@@ -17,6 +17,10 @@ use super::{Answer, Certificate, Equilibrium, MOST_ENUMERATED, Solution, Trial};
 
 /// Most choices of drivers that are tried for one load: those of [`MOST_ENUMERATED`] elements, with what leads to them.
 const MOST_CHOICES: usize = 2 << MOST_ENUMERATED;
+/// Most equilibria that are followed through a train with more than [`MOST_ENUMERATED`] elements.
+const MOST_FOLLOWED: usize = 256;
+/// Choices for which the exact forces of a block stand that has so many times [`MOST_ENUMERATED`] equations, cubed.
+const EXACT_FORCES: usize = 1024;
 
 /// Equilibria that form a whole range.
 #[derive(Clone, Debug)]
@@ -73,7 +77,7 @@ impl Equilibrium {
             pattern: vec![true; n],
             settled: vec![None; n],
             left: t.to_vec(),
-            open: Block { rows: vec![], columns: vec![] },
+            open: Block::default(),
             touched: vec![false; n],
             acts: t.iter().any(|x| !x.is_zero()),
         };
@@ -85,6 +89,9 @@ impl Equilibrium {
                     // What was not looked at may have equilibria of its own.
                     return Answer { solutions: vec![], certificate: Certificate::Undecided, stretches: vec![] };
                 }
+            }
+            if next.len() > MOST_FOLLOWED && self.moving() > MOST_ENUMERATED {
+                return Answer { solutions: vec![], certificate: Certificate::Undecided, stretches: vec![] };
             }
             branches = next;
         }
@@ -130,16 +137,24 @@ impl Equilibrium {
         let t_float: Vec<f64> = t.iter().map(Rational::to_f64).collect();
         let is_settled = !block.rows.iter().any(|&row| branch.touched[row]);
         let first = next.len();
+        let exact_forces = EXACT_FORCES * (block.rows.len() / (MOST_ENUMERATED + 1)).pow(3);
         if is_settled && part.certificate.unique_for_every_load() {
-            *choices = choices.checked_sub(1)?;
+            *choices = choices.checked_sub(1 + exact_forces)?;
             let mut pattern = part.pivot(&t, &t_float)?.pattern;
             (0..pattern.len()).filter(|&k| !part.is_moving(k)).for_each(|k| pattern[k] = true);
-            self.settle(block, part, branch, pattern, &t, next);
+            next.push(self.settle(block, part, branch, pattern, &t));
             return Some(());
         }
         let moving: Vec<usize> = (0..block.columns.len()).filter(|&k| part.is_moving(k)).collect();
-        let tried = 1usize.checked_shl(moving.len() as u32).filter(|_| moving.len() <= MOST_ENUMERATED)?;
+        let tried = (moving.len() <= MOST_ENUMERATED).then_some(1usize << moving.len().min(MOST_ENUMERATED))?;
         *choices = choices.checked_sub(tried)?;
+        // An idle element fits either choice.
+        let add = |found: Branch, next: &mut Vec<Branch>| {
+            let is_like = |b: &Branch| b.open.columns.is_empty() && b.settled == found.settled;
+            if !found.open.columns.is_empty() || !next[first..].iter().any(is_like) {
+                next.push(found);
+            }
+        };
         for mask in 0..tried {
             let mut pattern = vec![true; block.columns.len()];
             moving.iter().enumerate().for_each(|(bit, &k)| pattern[k] = mask >> bit & 1 == 0);
@@ -147,15 +162,8 @@ impl Equilibrium {
             let trial = if is_settled { part.attempt(&choice, &t, &t_float) } else { None };
             match trial {
                 Some(trial) if part.wrong(&trial, &pattern, 0).is_none() => {
-                    self.settle(block, part, branch.clone(), pattern, &t, next);
-                    let (found, others) = next.split_last().expect("it was added");
-                    // An idle element fits either choice.
-                    if others[first..]
-                        .iter()
-                        .any(|b| b.open.columns.len() == found.open.columns.len() && b.settled == found.settled)
-                    {
-                        next.pop();
-                    }
+                    *choices = choices.checked_sub(exact_forces)?;
+                    add(self.settle(block, part, branch.clone(), pattern, &t), next);
                 }
                 Some(_) => {}
                 // Where nothing acts the train may be wedged within itself; that is no answer to a load.
@@ -168,9 +176,12 @@ impl Equilibrium {
                         self.columns[j].entries.iter().for_each(|(row, ..)| found.touched[*row] = true);
                     }
                     // Many at once take long.
-                    *choices = choices.checked_sub((found.open.rows.len() / MOST_ENUMERATED).pow(3))?;
-                    if self.polyhedron(&found).is_some() {
-                        next.push(found);
+                    let many = if self.moving() > MOST_ENUMERATED { found.open.rows.len() / 4 } else { 0 };
+                    *choices = choices.checked_sub(many.pow(3))?;
+                    if let Some((others, parts)) = self.polyhedron(&found) {
+                        let (ends, is_range) = self.ends(&found.settled, &others, &parts);
+                        let found = if is_range { found } else { self.settle_open(found, &ends[0]) };
+                        add(found, next);
                     }
                 }
                 None => {}
@@ -179,30 +190,36 @@ impl Equilibrium {
         Some(())
     }
 
-    /// Adds a branch that goes on with the forces of one choice of drivers in a block, which are certain.
-    fn settle(
-        &self,
-        block: &Block,
-        part: &Self,
-        mut branch: Branch,
-        pattern: Vec<bool>,
-        t: &[Rational],
-        next: &mut Vec<Branch>,
-    ) {
+    /// The branch that goes on with the forces of one choice of drivers in a block, which are certain.
+    fn settle(&self, block: &Block, part: &Self, mut branch: Branch, pattern: Vec<bool>, t: &[Rational]) -> Branch {
         let choice: Vec<_> = pattern.iter().map(|p| Some(*p)).collect();
         let forces = part.exact_forces(&choice, t).expect("regular");
         for ((&j, force), p) in block.columns.iter().zip(forces).zip(pattern) {
             // Where it is certain that the equations are regular, an idle element fits either choice.
             branch.pattern[j] = p || (force.is_zero() && part.certificate.unique_for_every_load());
-            if !force.is_zero() {
-                let rho = self.rho_exact(j, Some(p));
-                for (row, constant, slope) in &self.columns[j].entries {
-                    branch.left[*row] -= &(constant + &(slope * &rho)) * &force;
-                }
-            }
-            branch.settled[j] = Some(force);
+            self.load(&mut branch, j, force);
         }
-        next.push(branch);
+        branch
+    }
+
+    /// The branch in which nothing is open, with the only forces that there are.
+    fn settle_open(&self, mut branch: Branch, forces: &[Rational]) -> Branch {
+        for j in std::mem::take(&mut branch.open).columns {
+            self.load(&mut branch, j, forces[j].clone());
+        }
+        branch.touched.fill(false);
+        branch
+    }
+
+    /// Settles a force, which loads what follows.
+    fn load(&self, branch: &mut Branch, j: usize, force: Rational) {
+        if !force.is_zero() {
+            let rho = self.rho_exact(j, Some(branch.pattern[j]));
+            for (row, constant, slope) in &self.columns[j].entries {
+                branch.left[*row] -= &(constant + &(slope * &rho)) * &force;
+            }
+        }
+        branch.settled[j] = Some(force);
     }
 
     /// The forces that are not settled; none if there are none.

@@ -71,7 +71,7 @@ pub struct PointSetup<'s> {
 /// Trains that differ in quantities of their file, kept for the next point.
 #[derive(Debug)]
 pub struct TrainCache {
-    /// How many are kept.
+    /// How many are kept that differ from others in numbers alone.
     most: usize,
     known: HashMap<Settings, Made>,
     /// Trains that nobody asks for any more, to be given other numbers.
@@ -120,18 +120,27 @@ impl TrainCache {
         Self { most: 4, ..Self::default() }
     }
 
-    /// Forgets all trains but those that can be given other numbers.
-    fn spare_all(&mut self) {
+    /// Forgets trains where there are many; those that can be given other numbers are kept for that.
+    fn make_room(&mut self) {
+        let is_full = self.known.len() >= MOST_TRAINS;
+        if !is_full && self.known.values().filter(|made| made.by_numbers).count() < self.most {
+            return;
+        }
         self.spare.clear();
-        let made = self.known.drain().filter(|(_, made)| made.by_numbers);
-        self.spare.extend(made.filter_map(|(key, made)| Some((key, made.train.ok()?))));
+        for (key, made) in std::mem::take(&mut self.known) {
+            match made {
+                Made { train: Ok(train), by_numbers: true } => self.spare.push((key, train)),
+                _ if is_full => {}
+                made => drop(self.known.insert(key, made)),
+            }
+        }
     }
 
     /// One that differs from the train asked for in the values of these settings alone.
     fn spare(&mut self, key: &Settings) -> Option<Arc<Train>> {
-        let (own, _) = self.spare.last()?;
-        let are_alike = own.len() == key.len() && own.iter().zip(key).all(|(a, b)| a.0 == b.0);
-        are_alike.then(|| self.spare.pop()).flatten().map(|(_, train)| train)
+        let is_alike = |own: &Settings| own.len() == key.len() && own.iter().zip(key).all(|(a, b)| a.0 == b.0);
+        let at = self.spare.iter().rposition(|(own, _)| is_alike(own))?;
+        Some(self.spare.swap_remove(at).1)
     }
 
     /// A value with a unit.
@@ -361,9 +370,7 @@ impl<'s> PointSetup<'s> {
         if let Some(known) = trains.known.get(&key) {
             return known.train.clone();
         }
-        if trains.known.len() >= trains.most {
-            trains.spare_all();
-        }
+        trains.make_room();
         let made = self.make(&key, &of_train, trains);
         let train = made.train.clone();
         trains.known.insert(key, made);

@@ -533,8 +533,8 @@ impl<'s> UncertaintyPlan<'s> {
     /// The work was cancelled.
     pub fn evaluate_within(&self, points: Range<usize>, work: &dyn Work) -> Result<SampleResult, Cancelled> {
         // Whole groups. The first point of a piece is answered the long way, so there are not too many pieces; and enough for
-        // every processor.
-        let piece = (points.len() / 32).clamp(64, 512);
+        // many processors.
+        let piece = (points.len() / 64).clamp(64, 512);
         let piece = self.group() * (piece / self.group()).max(1);
         work.begin("points", points.len() as u64);
         let parts = work::map(work, points.len().div_ceil(piece), |k| {
