@@ -17,8 +17,9 @@ use super::{Answer, Certificate, Equilibrium, MOST_ENUMERATED, Solution, Trial};
 
 /// Most choices of drivers that are tried for one load: those of [`MOST_ENUMERATED`] elements, with what leads to them.
 const MOST_CHOICES: usize = 2 << MOST_ENUMERATED;
-/// Most equilibria that are followed through a train with more than [`MOST_ENUMERATED`] elements.
-const MOST_FOLLOWED: usize = 256;
+/// Most equilibria that are followed, times the square of the number of elements: each is told with all of them, and compared
+/// with all others.
+const MOST_FOLLOWED: usize = 1 << 20;
 /// Choices for which the exact forces of a block stand that has so many times [`MOST_ENUMERATED`] equations, cubed.
 const EXACT_FORCES: usize = 1024;
 
@@ -90,7 +91,7 @@ impl Equilibrium {
                     return Answer { solutions: vec![], certificate: Certificate::Undecided, stretches: vec![] };
                 }
             }
-            if next.len() > MOST_FOLLOWED && self.moving() > MOST_ENUMERATED {
+            if next.len() * n * n > MOST_FOLLOWED {
                 return Answer { solutions: vec![], certificate: Certificate::Undecided, stretches: vec![] };
             }
             branches = next;

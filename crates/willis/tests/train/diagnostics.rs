@@ -544,6 +544,7 @@ cases! {
 
     // W309 SelfLocking
     regress_w309_wolfrom: SelfLocking, WOLFROM;
+    regress_w309_long_chain: SelfLocking, long_chain();
 
     // W310 SeveralSolutions
     regress_w310_two_efficiencies: SeveralSolutions, TWO_EFFICIENCIES;
@@ -556,7 +557,7 @@ cases! {
     regress_w312_torque: OneWay, and(ONE_WAY, "[[operation]]\nname = \"coast\"\nstate = \"low\"\nspeeds = { sun = \"1000 rpm\" }\ntorques = { sun = \"-10 N m\" }");
 
     // W313 NotEnumerated
-    regress_w313_long_chain: NotEnumerated, long_chain();
+    regress_w313_many_wedges: NotEnumerated, many_wedges();
 
     // E110 ImpossibleGeometry
     regress_e110_pointed_tip: ImpossibleGeometry, with(TOOTHED, "teeth = 30", "teeth = 30, addendum = 2.4");
@@ -811,6 +812,27 @@ fn long_chain() -> String {
         );
     }
     text
+}
+
+/// Stages on one output, each with a load of its own that it carries in two ways: more equilibria than anybody wants told.
+fn many_wedges() -> String {
+    let members = (0..17).map(|k| format!("c{k}")).chain(["out".to_owned()]).collect::<Vec<_>>();
+    let mut text = format!("format = 1\nname = \"many wedges\"\nmembers = {members:?}\nterminals = {members:?}\n");
+    for k in 0..17 {
+        text += &format!(
+            "\n[[set]]\nname = \"P{k}\"\ntype = \"stepped\"\nsuns = [\n  \
+             {{ member = \"frame\", teeth = 50, planet_teeth = 20 }},\n  \
+             {{ member = \"out\", teeth = 49, planet_teeth = 21 }},\n]\ncarrier = \"c{k}\"\nbasic_efficiency = 0.9\n"
+        );
+    }
+    let loads: Vec<String> = (0..17).map(|k| format!("c{k} = \"-1 N m\"")).collect();
+    and(
+        &text,
+        &format!(
+            "[[operation]]\nname = \"all\"\nspeeds = {{ out = \"100 rpm\" }}\ntorques = {{ {} }}",
+            loads.join(", ")
+        ),
+    )
 }
 
 /// Whatever text of a file has a character that cannot be shown is refused, wherever it stands.
