@@ -26,7 +26,9 @@ mod problem;
 use std::collections::HashSet;
 use std::sync::OnceLock;
 
-use nalgebra::{Const, DMatrix, DVector, Dyn};
+#[cfg(not(target_family = "wasm"))]
+use nalgebra::Const;
+use nalgebra::{DMatrix, DVector, Dyn};
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
@@ -841,8 +843,10 @@ impl Equilibrium {
         };
         self.regular_within(&bounds, regular)
             && match self.columns.len() {
-                // The meshes of one set, and of two: they are many points of a study.
+                // The meshes of one set, and of two: they are many points of a study. What is loaded into a browser is small.
+                #[cfg(not(target_family = "wasm"))]
                 2 => self.are_certain(Const::<2>, &own, torques, as_taken),
+                #[cfg(not(target_family = "wasm"))]
                 4 => self.are_certain(Const::<4>, &own, torques, as_taken),
                 n => self.are_certain(Dyn(n), &own, torques, as_taken),
             }
