@@ -192,7 +192,7 @@ codes! {
     /// turn in the direction that it blocks.
     W312 OneWay: "a one-way clutch cannot do that";
     /// The certificate failed and the train has too many interacting meshes to try every sign
-    /// pattern; a solution that was found may not be the only one.
+    /// pattern, or more equilibria than are told; a solution that was found may not be the only one.
     W313 NotEnumerated: "uniqueness could not be decided";
     /// The teeth can exist, but something about them is unusual and makes results doubtful:
     /// undercut, a thin tip, a contact ratio close to one, a path of contact cut short.

@@ -20,7 +20,8 @@ const MOST_CHOICES: usize = 2 << MOST_ENUMERATED;
 /// Most equilibria that are followed, times the square of the number of elements: each is told with all of them, and compared
 /// with all others.
 const MOST_FOLLOWED: usize = 1 << 20;
-/// Choices for which the exact forces of a block stand that has so many times [`MOST_ENUMERATED`] equations, cubed.
+/// How many choices the exact forces of a block count for that has more than [`MOST_ENUMERATED`] equations; times the cube of how
+/// many times as many it has.
 const EXACT_FORCES: usize = 1024;
 
 /// Equilibria that form a whole range.
@@ -62,7 +63,7 @@ struct Branch {
     settled: Vec<Option<Rational>>,
     /// What they leave of the load.
     left: Vec<Rational>,
-    /// Rows and columns of the forces that do not, in the order of the blocks.
+    /// Rows and columns of the forces that do not, in the order of the blocks: they form a range.
     open: Block,
     /// Whether each row has one of them in it.
     touched: Vec<bool>,
@@ -86,13 +87,11 @@ impl Equilibrium {
         for (block, part) in self.blocks.iter().zip(&self.parts) {
             let mut next = Vec::new();
             for branch in branches {
-                if self.follow(block, part, branch, &mut choices, &mut next).is_none() {
+                let followed = self.follow(block, part, branch, &mut choices, &mut next);
+                if followed.is_none() || next.len() * n * n > MOST_FOLLOWED {
                     // What was not looked at may have equilibria of its own.
                     return Answer { solutions: vec![], certificate: Certificate::Undecided, stretches: vec![] };
                 }
-            }
-            if next.len() * n * n > MOST_FOLLOWED {
-                return Answer { solutions: vec![], certificate: Certificate::Undecided, stretches: vec![] };
             }
             branches = next;
         }
@@ -112,14 +111,12 @@ impl Equilibrium {
                 continue;
             }
             let (others, parts) = self.polyhedron(&branch).expect("it was seen not to be empty");
-            let (ends, is_range) = self.ends(&branch.settled, &others, &parts);
+            let (ends, _) = self.ends(&branch.settled, &others, &parts);
             let mut found = ends.into_iter().map(|end| self.of_forces(end, branch.pattern.clone()));
             let solution = found.next().expect("a point");
             add(solution.clone(), &mut solutions);
             found.for_each(|end| add(end, &mut solutions));
-            if is_range {
-                stretches.push(Stretch { solution, settled: branch.settled, others, parts });
-            }
+            stretches.push(Stretch { solution, settled: branch.settled, others, parts });
         }
         Answer { solutions, certificate: self.certificate, stretches }
     }
@@ -147,7 +144,7 @@ impl Equilibrium {
             return Some(());
         }
         let moving: Vec<usize> = (0..block.columns.len()).filter(|&k| part.is_moving(k)).collect();
-        let tried = (moving.len() <= MOST_ENUMERATED).then_some(1usize << moving.len().min(MOST_ENUMERATED))?;
+        let tried = (moving.len() <= MOST_ENUMERATED).then(|| 1usize << moving.len())?;
         *choices = choices.checked_sub(tried)?;
         // An idle element fits either choice.
         let add = |found: Branch, next: &mut Vec<Branch>| {
@@ -265,7 +262,7 @@ impl Equilibrium {
         };
         let first = forces(others);
         let (mut ends, mut is_range) = (vec![first.clone()], false);
-        let open = (0..first.len()).filter(|&column| settled[column].is_none());
+        let open = (0..first.len()).filter(|&column| parts.iter().any(|part| part.column == column));
         for (column, way) in open.flat_map(|column| [(column, 1), (column, -1)]) {
             let one = |part: &Part| {
                 if part.column == column { Rational::from(i64::from(part.sign) * way) } else { Rational::ZERO }
