@@ -620,24 +620,24 @@ impl<R: Real> Pair<R> {
 /// Faults of single quantities.
 fn scalar_faults<R: Real>(data: &PairData<R>) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut check = |quantity: Quantity, wheel, value: R| faults.extend(quantity.check(wheel, value.re()));
-    check(Quantity::Module, None, data.module);
-    check(Quantity::PressureAngle, None, data.pressure_angle);
-    check(Quantity::Helix, None, data.helix);
-    check(Quantity::Width, None, data.width);
+    let mut check = |quantity: Quantity, wheel, value: &R| faults.extend(quantity.check(wheel, value.re()));
+    check(Quantity::Module, None, &data.module);
+    check(Quantity::PressureAngle, None, &data.pressure_angle);
+    check(Quantity::Helix, None, &data.helix);
+    check(Quantity::Width, None, &data.width);
     if let Some(a) = data.centre_distance {
-        check(Quantity::CentreDistance, None, a);
+        check(Quantity::CentreDistance, None, &a);
     }
     for (k, w) in data.wheels.iter().enumerate() {
-        check(Quantity::Teeth, Some(k), R::from(w.teeth));
-        check(Quantity::Shift, Some(k), w.shift);
-        check(Quantity::Dedendum, Some(k), w.dedendum);
+        check(Quantity::Teeth, Some(k), &R::from(w.teeth));
+        check(Quantity::Shift, Some(k), &w.shift);
+        check(Quantity::Dedendum, Some(k), &w.dedendum);
         match w.tip {
             Tip::Addendum { coefficient, alteration } => {
-                check(Quantity::Addendum, Some(k), coefficient);
-                check(Quantity::TipAlteration, Some(k), alteration);
+                check(Quantity::Addendum, Some(k), &coefficient);
+                check(Quantity::TipAlteration, Some(k), &alteration);
             }
-            Tip::Radius(radius) => check(Quantity::TipRadius, Some(k), radius),
+            Tip::Radius(radius) => check(Quantity::TipRadius, Some(k), &radius),
         }
     }
     match &data.wheels {

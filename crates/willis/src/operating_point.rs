@@ -616,35 +616,35 @@ impl<'t, R: Real> Physics<'t, R> {
         known: &dyn Fn(MemberId) -> bool,
     ) -> Vec<(Source, Drag<R>)> {
         let mut all = Vec::new();
-        let mut drag = |source: Source, members: [MemberId; 2], torque: R| {
-            all.extend(self.drag_between(speeds, known, members, torque).map(|drag| (source, drag)));
+        let mut drag = |source: Source, members: [MemberId; 2], torque: &R| {
+            all.extend(self.drag_between(speeds, known, members, *torque).map(|drag| (source, drag)));
         };
         for (k, seal) in self.train.seals.iter().enumerate() {
-            drag(Source::Seal(k), seal.members, self.seal(k, speeds) * self.factor(LossPart::Seal));
+            drag(Source::Seal(k), seal.members, &(self.seal(k, speeds) * self.factor(LossPart::Seal)));
         }
         for (k, body) in self.bodies.iter().enumerate() {
             let part = match body.kind(&self.train).0 {
                 LossKind::Churning => LossPart::Churning,
                 _ => LossPart::Windage,
             };
-            drag(Source::Body(k), [body.member, body.against], self.body(body, speeds) * self.factor(part));
+            drag(Source::Body(k), [body.member, body.against], &(self.body(body, speeds) * self.factor(part)));
         }
         for (k, rotor) in self.train.rotors.iter().enumerate() {
             let torque = self.rotor(k, speeds) * self.factor(LossPart::Rotor);
-            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], torque);
+            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], &torque);
         }
         let Some(drags) = &self.drags else { return all };
         for k in drags {
             let members = self.train.drags[*k].members;
-            drag(Source::Drag(*k), members, self.drag(*k, self.slip(speeds, members)));
+            drag(Source::Drag(*k), members, &self.drag(*k, self.slip(speeds, members)));
         }
         for (k, element) in self.train.shift_elements.iter().enumerate() {
             if let Some(torque) = self.open(k, speeds) {
-                drag(Source::Open(k), element.members, torque);
+                drag(Source::Open(k), element.members, &torque);
             }
         }
         for (k, pump) in self.train.pumps.iter().enumerate() {
-            drag(Source::Pump(k), [pump.member, FRAME], self.pump(k, speeds));
+            drag(Source::Pump(k), [pump.member, FRAME], &self.pump(k, speeds));
         }
         for m in meshes {
             let mesh = &self.train.meshes[m.mesh.0];
@@ -653,7 +653,7 @@ impl<'t, R: Real> Physics<'t, R> {
             for k in 0..2 {
                 let speed = real::abs(m.relative_speeds[k]);
                 if speed.re() > 0.0 {
-                    drag(Source::Jet(m.mesh.0), [mesh.gears[k].member, mesh.carrier], power * 0.5 / speed);
+                    drag(Source::Jet(m.mesh.0), [mesh.gears[k].member, mesh.carrier], &(power * 0.5 / speed));
                 }
             }
         }
@@ -671,8 +671,8 @@ impl<'t, R: Real> Physics<'t, R> {
         let most = 2 * meshes.len() + self.train.bearings.len() + without_load.drags.len();
         let (mut sources, mut drags) = (Vec::with_capacity(most), Vec::with_capacity(most));
         let none = R::from(0.0);
-        let mut drag = |source: Source, members: [MemberId; 2], torque: R| {
-            if let Some(drag) = self.drag_between(speeds, known, members, torque) {
+        let mut drag = |source: Source, members: [MemberId; 2], torque: &R| {
+            if let Some(drag) = self.drag_between(speeds, known, members, *torque) {
                 sources.push(source);
                 drags.push(drag);
             }
@@ -693,7 +693,11 @@ impl<'t, R: Real> Physics<'t, R> {
             for k in 0..2 {
                 let speed = real::abs(m.relative_speeds[k]);
                 if speed.re() > 0.0 && mesh.computed {
-                    drag(Source::Rolling(m.mesh.0), [mesh.gears[k].member, mesh.carrier], tooth.rolling * 0.5 / speed);
+                    drag(
+                        Source::Rolling(m.mesh.0),
+                        [mesh.gears[k].member, mesh.carrier],
+                        &(tooth.rolling * 0.5 / speed),
+                    );
                 }
             }
             let sliding = match (tooth.friction, mesh.computed, m.driver) {
@@ -747,7 +751,7 @@ impl<'t, R: Real> Physics<'t, R> {
                     }
                 }
             }
-            drag(Source::Bearing(k), mount.members, torque);
+            drag(Source::Bearing(k), mount.members, &torque);
         }
         sources.extend(without_load.drags.iter().map(|d| d.0));
         drags.extend(without_load.drags.iter().map(|d| d.1));

@@ -1,11 +1,14 @@
 //! The number that a law computes with: `f64`, or a dual number that carries derivatives along.
 
-use num_dual::{Dual, Dual2, Dual3, DualNum, DualStruct, HyperDual, HyperHyperDual};
+use num_dual::{Dual, Dual2, Dual3, DualNum, DualSVec, DualStruct, HyperDual, HyperHyperDual};
 
 /// Numbers in which loss laws are written, so that every law also gives its derivatives.
 ///
 /// Implemented for `f64` and for the dual numbers of the crate `num-dual`. Decisions are taken on
 /// the value, [`re`](num_dual::DualStruct::re).
+///
+/// Closures take such numbers by reference. A closure that is called with a large one by value may change that of its caller: a
+/// defect of the compiler (rust-lang/rust#155241), by which viscosities came out thousands of times too high.
 ///
 /// # Example
 /// ```
@@ -56,6 +59,14 @@ macro_rules! dual {
 }
 
 dual!(Dual, Dual2, Dual3, HyperDual, HyperHyperDual);
+
+impl<T: Real, const N: usize> Real for DualSVec<T, N> {
+    type Constant = T;
+
+    fn constant(value: T) -> Self {
+        Self::from_re(value)
+    }
+}
 
 /// The kind of number whose derivatives a number carries.
 pub type Inner<D> = <D as Real>::Constant;

@@ -35,6 +35,9 @@ const GENERATED: &[&str] = &[
     "crates/willis/src/dynamics/fixed/examples/simpson-ford-c4.toml",
     "crates/willis/src/dynamics/fixed/examples/zf-6hp26.toml",
     "crates/willis/src/dynamics/fixed/examples/zf-8hp70.toml",
+    "crates/willis/src/study/sensitivity/examples/fva-planetary-stage.toml",
+    "crates/willis/src/study/sensitivity/examples/industrial-planetary-heat.toml",
+    "crates/willis/src/study/sensitivity/examples/two-speed-wet-brake.toml",
     "crates/willis-casebook/data/examples/nrel-5mw-stage-1.toml",
     "crates/willis-casebook/data/examples/wang-herringbone.toml",
     "crates/willis-casebook/data/examples/wang-herringbone-physical.toml",
@@ -42,7 +45,11 @@ const GENERATED: &[&str] = &[
 
 /// A crate can only hold what lies inside it: the case book, and tests inside the library, have copies of the examples that
 /// they need.
-const COPIES: &[&str] = &["crates/willis-casebook/data/examples", "crates/willis/src/dynamics/fixed/examples"];
+const COPIES: &[&str] = &[
+    "crates/willis-casebook/data/examples",
+    "crates/willis/src/dynamics/fixed/examples",
+    "crates/willis/src/study/sensitivity/examples",
+];
 
 /// Figures of README and book, and what draws them.
 const FIGURES: &[(&str, &[&str])] = &[

@@ -137,9 +137,9 @@ const ZERO_CELSIUS: f64 = 273.15;
 
 /// `A` and `B` of ASTM D341 through two points: temperature in K, viscosity in m²/s.
 fn walther<R: Real>((t1, nu1): (f64, R), (t2, nu2): (f64, R)) -> Viscosity<R> {
-    let z = |nu: R| (nu * 1e6 + 0.7).log10().log10();
-    let b = (z(nu1) - z(nu2)) / (t2.log10() - t1.log10());
-    Viscosity::Walther { a: z(nu1) + b * t1.log10(), b }
+    let [z1, z2] = [nu1, nu2].map(|nu| (nu * 1e6 + 0.7).log10().log10());
+    let b = (z1 - z2) / (t2.log10() - t1.log10());
+    Viscosity::Walther { a: z1 + b * t1.log10(), b }
 }
 
 impl<R: Real> Viscosity<R> {

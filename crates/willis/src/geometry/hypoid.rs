@@ -116,11 +116,11 @@ impl Hypoid {
         let sign = (self.spiral[0] - self.spiral[1]).signum();
         let normal = pressure_angle.cos();
         let [first, second] = self.spiral.map(|psi| mu * (psi.tan() * sign));
-        let over = |out: R, input: R| match input.re() > 0.0 {
-            true => out / input,
+        let over = |out: &R, input: &R| match input.re() > 0.0 {
+            true => *out / *input,
             // Friction alone holds the gear that should drive.
             false => R::from(-1.0),
         };
-        [over(normal + second, normal + first), over(normal - first, normal - second)]
+        [over(&(normal + second), &(normal + first)), over(&(normal - first), &(normal - second))]
     }
 }

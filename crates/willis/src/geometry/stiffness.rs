@@ -94,8 +94,9 @@ impl<R: Real> Pair<R> {
                 + x1 * 0.00529 * x1
                 + x2 * 0.00182 * x2;
         let degrees = self.data.pressure_angle * (180.0 / std::f64::consts::PI);
-        let rack = |dedendum: R| ((-dedendum + 1.2) * 0.5 + 1.0) * (-((-degrees + 20.0) * 0.02) + 1.0);
-        let racks = (rack(self.data.wheels[0].dedendum) + rack(self.data.wheels[1].dedendum)) * 0.5;
+        let racks =
+            [0, 1].map(|k| ((-self.data.wheels[k].dedendum + 1.2) * 0.5 + 1.0) * (-((-degrees + 20.0) * 0.02) + 1.0));
+        let racks = (racks[0] + racks[1]) * 0.5;
         racks * 0.8 * cos_helix / flexibility * youngs_modulus / STEEL * 1e9
     }
 }

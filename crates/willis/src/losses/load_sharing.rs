@@ -84,7 +84,7 @@ impl<D: crate::Real> ToothLoad<D> {
     /// All pairs in contact give way by as much, less their gap: `Σ_k c_k (δ − g_k) = 1` over those with `δ > g_k`. The sum
     /// is convex in δ and taken over all pairs first, so that Newton's method comes from above and ends after as many steps
     /// as there are pairs.
-    fn relieved(&self, stiffness: impl Fn(D) -> D) -> D {
+    fn relieved(&self, stiffness: impl Fn(&D) -> D) -> D {
         let (x, e_a) = (self.position, self.contact_ratio);
         if !self.on_path() {
             return D::zero();
@@ -98,7 +98,7 @@ impl<D: crate::Real> ToothLoad<D> {
                 let place = x + (first + k as f64);
                 let gap = self.relief.gap(place, e_a);
                 if deflection.is_none_or(|d| gap.re() < d.re()) {
-                    let c = stiffness(place);
+                    let c = stiffness(&place);
                     load += c * gap;
                     spring += c;
                 }
@@ -110,7 +110,7 @@ impl<D: crate::Real> ToothLoad<D> {
             deflection = Some(next);
         }
         let own = deflection.unwrap_or(D::zero()) - self.relief.gap(x, e_a);
-        if own.re() > 0.0 { own * stiffness(x) } else { D::zero() }
+        if own.re() > 0.0 { own * stiffness(&x) } else { D::zero() }
     }
 }
 

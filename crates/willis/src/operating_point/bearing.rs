@@ -173,16 +173,16 @@ impl<R: Real> Physics<'_, R> {
         let (mount, numbers) = (&self.train.bearings[k], &self.numbers.bearings[k]);
         // What the teeth make of the load, of the planet that is loaded most; of a load that is not all theirs to first order.
         let beyond_mean = self.load_sharing(mount, &carried.loading) - 1.0;
-        let hardest = |load: Dual<R>| load + Dual::from_re(load.eps * beyond_mean);
+        let hardest = |load: &Dual<R>| *load + Dual::from_re(load.eps * beyond_mean);
         let given = Dual::from_re(numbers.radial_load / f64::from(mount.count));
         let mut worst = Dual::from_re(R::from(0.0));
         for own in &carried.radial {
-            let own = hardest(*own + given);
+            let own = hardest(&(*own + given));
             if own.re.re() >= worst.re.re() {
                 worst = own;
             }
         }
-        [worst, hardest(self.thrust(k, carried))]
+        [worst, hardest(&self.thrust(k, carried))]
     }
 
     /// Friction of the bearings of a mount under what they carry.
@@ -211,9 +211,9 @@ impl<R: Real> Physics<'_, R> {
             torque += each * (1.0 / carried.radial.len() as f64);
         }
         let number = mount.count * mount.places;
-        let finite = |x: R| if x.re().is_finite() { x } else { none };
-        let all = real::max(finite(torque.re), none) * f64::from(number);
-        let proportional = real::clamp(finite(torque.eps) * f64::from(number), none, all);
+        let [all, proportional] = [torque.re, torque.eps].map(|x| if x.re().is_finite() { x } else { none });
+        let all = real::max(all, none) * f64::from(number);
+        let proportional = real::clamp(proportional * f64::from(number), none, all);
         Friction { speed, torque: all, proportional }
     }
 

@@ -509,10 +509,11 @@ impl<R: Real> Physics<'_, R> {
         }
 
         if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
-            let mean = |sum: R, (place, w): &(Place<R>, R)| {
-                sum + law.eval(&loaded.rolling_contact(oil, &loaded.at(place))) * *w
-            };
-            let rolling = fixed.rolling.iter().fold(none, mean) * teeth.pair.contact_ratio * f64::from(mesh.count);
+            let rolling = fixed
+                .rolling
+                .iter()
+                .fold(none, |sum, (place, w)| sum + law.eval(&loaded.rolling_contact(oil, &loaded.at(place))) * *w);
+            let rolling = rolling * teeth.pair.contact_ratio * f64::from(mesh.count);
             tooth.rolling = if rolling.re().is_finite() { real::max(rolling, none) } else { none };
         }
         tooth

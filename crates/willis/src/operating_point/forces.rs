@@ -378,7 +378,7 @@ fn seats<R: Real>(
     let mut seats: Vec<Option<Seat<R>>> = vec![None; train.planets.len()];
     let mut mirrored = Vec::new();
     let planet = |m: MemberId| train.planets.iter().position(|p| p.member == m);
-    let blank = |p: usize, group: usize, toward: Plane<R>| {
+    let blank = |p: usize, group: usize, toward: &Plane<R>| {
         let own = &train.planets[p];
         let mesh = &train.meshes[own.mesh.0];
         let at: Vec<R> = (0..train.meshes.len())
@@ -391,7 +391,7 @@ fn seats<R: Real>(
         Seat {
             carrier: of[own.carrier.0],
             group,
-            toward,
+            toward: *toward,
             count: own.count,
             single: own.count == 1 && mesh.set.is_none_or(|s| train.sets[s].planets.is_some()),
             position: at.iter().fold(none, |sum, z| sum + *z) / (at.len().max(1) as f64),
@@ -403,7 +403,7 @@ fn seats<R: Real>(
         }
         let group = *groups;
         *groups += 1;
-        seats[first] = Some(blank(first, group, [one, none]));
+        seats[first] = Some(blank(first, group, &[one, none]));
         let mut open = vec![first];
         while let Some(p) = open.pop() {
             let here = seats[p].expect("it was placed");
@@ -424,7 +424,7 @@ fn seats<R: Real>(
                 let sine = (-(cosine * cosine) + 1.0).max_zero_sqrt();
                 let [x, y] = here.toward;
                 let toward = [x * cosine - y * sine, x * sine + y * cosine];
-                seats[other] = Some(blank(other, group, toward));
+                seats[other] = Some(blank(other, group, &toward));
                 open.push(other);
                 if !mirrored.contains(&group) {
                     mirrored.push(group);
@@ -532,6 +532,18 @@ fn systems<R: Real>(places: &[Place<R>], shafts: usize) -> Vec<System<R>> {
     all
 }
 
+/// A force in proportion to the tooth forces.
+fn proportional<R: Real>(x: R) -> Dual<R> {
+    Dual::new(x, x)
+}
+
+/// Size of a force that has a part in proportion to the tooth forces.
+fn size<R: Real>(teeth: Plane<R>, rest: Plane<R>) -> Dual<R> {
+    let [x, y] = [0, 1].map(|k| proportional(teeth[k]) + Dual::from_re(rest[k]));
+    let square = x * x + y * y;
+    if square.re.re() > 0.0 { square.sqrt() } else { Dual::from_re(R::from(0.0)) }
+}
+
 impl<R: Real> Physics<'_, R> {
     /// The forces of one mesh on its two gears; of planets, on one of them. `side` is -1 for the mirror image.
     fn pressed(&self, m: &MeshFlow<R>, side: f64) -> Option<(Touch<R>, Pressed<R>)> {
@@ -604,7 +616,7 @@ impl<R: Real> Physics<'_, R> {
         let side = |group: usize| if flipped[group] { -1.0 } else { 1.0 };
 
         let none = R::from(0.0);
-        let fixed = |x: R| Dual::from_re(x);
+        let fixed = Dual::<R>::from_re;
         let mut on_planets: SmallVec<[PlanetLoad<R>; 2]> = smallvec![PlanetLoad::none(); planets];
         let mut on_shafts = ShaftLoads::none(forces);
         let unloaded = |place: &Place<R>| Carried {
@@ -666,28 +678,21 @@ impl<R: Real> Physics<'_, R> {
             }
         }
 
-        let scale = |x: R| Dual::new(x, x);
-        // Size of a force that has a part in proportion to the tooth forces.
-        let size = |teeth: Plane<R>, rest: Plane<R>| {
-            let [x, y] = [0, 1].map(|k| scale(teeth[k]) + fixed(rest[k]));
-            let square = x * x + y * y;
-            if square.re.re() > 0.0 { square.sqrt() } else { fixed(none) }
-        };
         for (beam, load) in forces.beams.iter().zip(&on_planets) {
             for k in &beam.places {
                 let (place, own) = (&forces.places[*k], &mut places[*k]);
                 if place.locates {
-                    own.axial = scale(real::abs(load.thrust) * (f64::from(place.count) / beam.locating));
+                    own.axial = proportional(real::abs(load.thrust) * (f64::from(place.count) / beam.locating));
                 }
                 for (radial, z) in own.radial.iter_mut().zip(place.positions()).filter(|_| place.radial) {
                     let known = size(beam.at(&load.wrench, z), beam.at(&load.centrifugal, z));
-                    *radial = known + scale(beam.at_most(load.extra, load.extra_tilt, z));
+                    *radial = known + proportional(beam.at_most(load.extra, load.extra_tilt, z));
                 }
             }
         }
         let mut shafts = Vec::with_capacity(forces.shafts.len());
         for system in &forces.systems {
-            self.share(system, &on_shafts, &size, &mut places, &mut shafts);
+            self.share(system, &on_shafts, &mut places, &mut shafts);
         }
         Reactions { places, shafts }
     }
@@ -697,7 +702,6 @@ impl<R: Real> Physics<'_, R> {
         &self,
         system: &System<R>,
         loads: &ShaftLoads<R>,
-        size: &dyn Fn(Plane<R>, Plane<R>) -> Dual<R>,
         carried: &mut [Carried<R>],
         shafts: &mut Vec<(MemberId, ShaftLoad)>,
     ) {

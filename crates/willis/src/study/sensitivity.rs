@@ -11,7 +11,11 @@
 
 mod balance;
 mod heat;
+mod lanes;
 mod seeded;
+
+use std::collections::VecDeque;
+use std::iter;
 
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +27,9 @@ use crate::losses::mesh_friction::MeshFriction;
 use crate::operating_point::LossKind;
 use crate::train::{FRAME, Input, Load, MemberKind, Operation, Slot, Train};
 
-use balance::{Moved, Powers, powers};
+use balance::{Powers, powers};
 use heat::Following;
+use lanes::{Asked, LANES, Moved};
 
 /// A loss is said to move with a quantity when it does so by this part of the largest change.
 const WORTH_TELLING: f64 = 1e-3;
@@ -237,6 +242,10 @@ struct Quantity {
 }
 
 impl Quantity {
+    fn asked(&self) -> Asked<'_> {
+        Asked { slots: &self.slots, moved: self.moved }
+    }
+
     /// Whether it cannot pass 1.
     fn is_efficiency(&self) -> bool {
         let cannot = |s: &Slot| matches!(s, Slot::Efficiency(..) | Slot::Variator(..) | Slot::Machine(..));
@@ -349,14 +358,13 @@ pub(super) fn loss_by(
     let operation = hot.as_ref().unwrap_or(operation);
     let following = report.heat.as_ref().and_then(|h| Following::new(train, operation, point, h));
     let mut slopes = Vec::with_capacity(quantities.len());
-    for slot in quantities {
-        let slots = [(*slot, 1.0)];
-        let numbers = seeded::numbers(train, operation.temperature, &slots);
-        let Some(mut found) = numbers.and_then(|n| powers(train, operation, point, n, Moved::Train)) else {
-            return Ok(None);
-        };
+    let slots: Vec<[(Slot, f64); 1]> = quantities.iter().map(|slot| [(*slot, 1.0)]).collect();
+    let asked: Vec<Asked<'_>> = slots.iter().map(|slots| Asked { slots, moved: Moved::Train }).collect();
+    let found = asked.chunks(LANES).flat_map(|group| powers::<LANES>(train, operation, point, group));
+    for (own, found) in asked.iter().zip(found) {
+        let Some(mut found) = found else { return Ok(None) };
         if let Some(following) = &following {
-            following.follow(&slots, &mut found);
+            following.follow(own.slots, &mut found);
         }
         if !found.loss.eps.is_finite() || found.error > 1e-6 {
             return Ok(None);
@@ -415,29 +423,33 @@ fn of_operation(
     }
 
     let mut checks = Checks { balance_residual: 0.0, rounds: 0, error: 0.0 };
-    for quantity in quantities(train, operation) {
-        // A temperature that follows is moved by the others.
-        if follows && quantity.slots.iter().any(|(s, _)| *s == Slot::Temperature) {
-            continue;
-        }
-        if let Some(mesh) = starts_to_move(train, operation, point, quantity.moved) {
-            let why = format!("{mesh} is loaded and at rest, and loses when it moves, whichever way");
+    // A temperature that follows is moved by the others.
+    let held = |quantity: &Quantity| follows && quantity.slots.iter().any(|(s, _)| *s == Slot::Temperature);
+    let mut wanted: VecDeque<(Quantity, Option<String>)> = (quantities(train, operation).into_iter())
+        .filter(|quantity| !held(quantity))
+        .map(|quantity| {
+            let edge = edge(train, operation, point, &quantity);
+            (quantity, edge)
+        })
+        .collect();
+    // One after the other as they are told, as many at once as fit.
+    let mut found = VecDeque::new();
+    while let Some((quantity, edge)) = wanted.pop_front() {
+        if let Some(why) = edge {
             all.without_derivative.push((quantity.name, why));
             continue;
         }
-        if !quantity.fits {
-            let why = "the centre distances are given, and no other shifts in this ring of gears keep them all";
-            all.without_derivative.push((quantity.name, why.into()));
-            continue;
+        if found.is_empty() {
+            let smooth = wanted.iter().filter(|(_, edge)| edge.is_none()).map(|(quantity, _)| quantity);
+            let group: Vec<Asked<'_>> = iter::once(&quantity).chain(smooth).take(LANES).map(Quantity::asked).collect();
+            found.extend(powers::<LANES>(train, operation, point, &group));
         }
-        let numbers = seeded::numbers(train, operation.temperature, &quantity.slots);
-        let found = numbers.and_then(|n| powers(train, operation, point, n, quantity.moved));
-        let Some(mut found) = found else {
+        let Some(mut found) = found.pop_front().flatten() else {
             let why = "the geometry or the equilibrium stands on an edge of what is possible";
             all.without_derivative.push((quantity.name, why.into()));
             continue;
         };
-        let finite = found.loss.eps.is_finite() && found.sources.iter().all(|s| s.3.eps.is_finite());
+        let finite = found.is_finite();
         if !finite || found.error > 1e-6 {
             let why = match finite {
                 true => format!("losses and torques did not agree: {:.1e} of the derivative is left", found.error),
@@ -462,6 +474,15 @@ fn of_operation(
     all.quantities.sort_by(|a, b| b.loss_change_w.abs().total_cmp(&a.loss_change_w.abs()));
     all.checks = Some(checks);
     Ok(all)
+}
+
+/// Why a quantity has no derivative, as far as the point tells.
+fn edge(train: &Train, operation: &Operation, point: &Point<'_>, quantity: &Quantity) -> Option<String> {
+    if let Some(mesh) = starts_to_move(train, operation, point, quantity.moved) {
+        return Some(format!("{mesh} is loaded and at rest, and loses when it moves, whichever way"));
+    }
+    let why = "the centre distances are given, and no other shifts in this ring of gears keep them all";
+    (!quantity.fits).then(|| why.to_owned())
 }
 
 /// A loaded mesh at rest that a prescribed speed sets in motion: there the loss has a kink.
@@ -697,4 +718,60 @@ fn notes(train: &Train, point: &Point<'_>) -> Vec<String> {
         all.push(format!("{name}: the first row of its loss table is in force and is not moved"));
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bits(found: &Powers) -> Vec<u64> {
+        let sums = [found.input, found.output, found.loss];
+        let all = sums.into_iter().chain(found.sources.iter().map(|s| s.3));
+        all.flat_map(|x| [x.re.to_bits(), x.eps.to_bits()]).chain([found.rounds as u64]).collect()
+    }
+
+    /// Each alone, all side by side in two orders, and beside one that has no slope: the same bits, and the values of the analysis.
+    #[test]
+    fn quantities_side_by_side_do_not_mix() {
+        let texts = [
+            include_str!("sensitivity/examples/fva-planetary-stage.toml"),
+            include_str!("sensitivity/examples/industrial-planetary-heat.toml"),
+            include_str!("sensitivity/examples/two-speed-wet-brake.toml"),
+        ];
+        for text in texts {
+            let train = Train::from_toml(text).unwrap();
+            for operation in &train.operations {
+                let (report, point, _) = analysis::settle(&train, operation).unwrap();
+                let (Some(point), [solution]) = (&point, &report.solutions[..]) else { continue };
+                let hot = report.heat.as_ref().map(|h| Operation { temperature: Some(h.oil_k), ..operation.clone() });
+                let operation = hot.as_ref().unwrap_or(operation);
+                let all = quantities(&train, operation);
+                let asked: Vec<Asked<'_>> =
+                    all.iter().filter(|q| edge(&train, operation, point, q).is_none()).map(Quantity::asked).collect();
+                assert!(asked.len() > LANES, "{}", report.name);
+                let found = |group: &[Asked<'_>]| -> Vec<Option<Powers>> {
+                    group.chunks(LANES).flat_map(|g| powers::<LANES>(&train, operation, point, g)).collect()
+                };
+                let alone: Vec<Powers> =
+                    asked.iter().map(|own| found(std::slice::from_ref(own)).remove(0).unwrap()).collect();
+                for own in &alone {
+                    let loss = own.loss.re;
+                    assert!((loss - solution.loss_w).abs() <= 1e-9 * solution.loss_w, "{loss} {}", solution.loss_w);
+                }
+                let none = [(Slot::Temperature, f64::NAN)];
+                let without = Asked { slots: &none, moved: Moved::Train };
+                let spoiled: Vec<Asked<'_>> = iter::once(without).chain(asked.iter().copied()).collect();
+                let back: Vec<Asked<'_>> = asked.iter().rev().copied().collect();
+                for (own, beside) in [
+                    (found(&asked), alone.iter().collect::<Vec<_>>()),
+                    (found(&back), alone.iter().rev().collect()),
+                    (found(&spoiled).split_off(1), alone.iter().collect()),
+                ] {
+                    for (own, alone) in own.iter().zip(beside) {
+                        assert_eq!(bits(own.as_ref().unwrap()), bits(alone), "{}", report.name);
+                    }
+                }
+            }
+        }
+    }
 }

@@ -309,3 +309,35 @@ fn libraries_name_no_option_of_the_command_line() {
         }
     }
 }
+
+/// Closures of a line whose parameters are large numbers by value.
+fn takes_numbers_by_value(line: &str) -> bool {
+    let numbers = ["R", "D", "Inner<D>", "Dual<R>", "Plane<R>", "Moving<N>", "T"];
+    line.split('|')
+        .skip(1)
+        .step_by(2)
+        .flat_map(|parameters| parameters.split(','))
+        .filter_map(|parameter| parameter.split_once(':'))
+        .any(|(_, of)| numbers.contains(&of.trim()))
+}
+
+/// A closure that is called by name with a large number by value may change that of its caller: a defect of the compiler, see
+/// [`willis::Real`].
+#[test]
+fn closures_take_numbers_by_reference() {
+    assert!(takes_numbers_by_value("let z = |nu: R| (nu * 1e6 + 0.7).log10();"));
+    assert!(takes_numbers_by_value("let over = |out: &R, input: R| out / input;"));
+    assert!(!takes_numbers_by_value("let z = |nu: &R, k: usize| (*nu * 1e6 + 0.7).log10();"));
+    let found: Vec<String> = rust_files(&src())
+        .into_iter()
+        .flat_map(|path| {
+            let of = path.file_name().unwrap().to_string_lossy().into_owned();
+            let code = code(&path);
+            code.lines()
+                .filter(|line| takes_numbers_by_value(line))
+                .map(|line| format!("{of}: {line}"))
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(found.is_empty(), "by reference, please:\n{}", found.join("\n"));
+}

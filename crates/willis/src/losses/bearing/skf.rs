@@ -123,7 +123,7 @@ impl Skf {
             Supply::Mist | Supply::Grease => return D::from(0.0),
         };
         let Mm { d, big_d, b, dm } = Mm::of(&s.bearing);
-        let fixed = |c: Inner<D>| D::constant(c);
+        let fixed = D::constant;
         let h = real::min(level * 1e3, dm * 1.2);
         if h.re() <= 0.0 {
             return D::from(0.0);
@@ -264,7 +264,7 @@ impl<D: Real> Turning<D> {
             Supply::Mist | Supply::Grease => 6e-8,
         });
         let one = D::from(1.0);
-        let fixed = |c: Inner<D>| D::constant(c);
+        let fixed = D::constant;
         let (phi_ish, phi_rs, phi_bl, mu_sl) = if turns {
             let phi_bl = (-n_nu.powf(1.4) * fixed(dm * 2.6e-8)).exp();
             (
@@ -311,7 +311,7 @@ impl<D: Real> Turning<D> {
         let [_, s2, s3, s4] = self.constants.sliding;
         let [first, second, third, fourth] = self.scales.map(D::constant);
         let (fr, fa) = (real::abs(s.radial_load), real::abs(s.axial_load));
-        let fixed = |c: Inner<D>| D::constant(c);
+        let fixed = D::constant;
         let y = s.bearing.axial_factor.unwrap_or(Inner::<D>::from(1.5));
         let cube = 1.0 / 3.0;
         match s.bearing.kind {

@@ -149,8 +149,7 @@ impl<D: Real> Slices<D> {
                 continue;
             }
             // Just inside, where lengths end at the same place.
-            let gap = |x: D| self.relief.gap(x, e_a);
-            let [ga, gb] = [gap(a), gap(b)];
+            let [ga, gb] = [a, b].map(|x| self.relief.gap(x, e_a));
             let Some(approach) = approach else {
                 sum.load += (ga + gb) * width / 2.0;
                 sum.spring += width;
@@ -239,8 +238,8 @@ impl<D: Real> Slices<D> {
     pub fn share(&self, x: D) -> D {
         let gap = self.relief.gap(x, self.contact_ratio);
         let mut share = D::zero();
-        let mut over = |from: D, over: D, times: f64| {
-            self.parts(PARTS[0], from, over, |phase, weight| {
+        let mut over = |from: &D, over: &D, times: f64| {
+            self.parts(PARTS[0], *from, *over, |phase, weight| {
                 let own = self.approach(phase - phase.re().floor()) - gap;
                 if own.re() > 0.0 {
                     share += own * weight * times;
@@ -248,9 +247,9 @@ impl<D: Real> Slices<D> {
             });
         };
         let whole = self.overlap_ratio.re().floor();
-        over(x, self.overlap_ratio - whole, 1.0);
+        over(&x, &(self.overlap_ratio - whole), 1.0);
         if whole > 0.0 {
-            over(D::zero(), D::one(), whole);
+            over(&D::zero(), &D::one(), whole);
         }
         share / self.overlap_ratio
     }

@@ -73,15 +73,15 @@ impl Law for Stiffness {
         if e_a.re() <= 1.0 {
             return D::one();
         }
-        let stiffness = |x: D| (min(min(x, e_a - x), e_a - 1.0) / (e_a - 1.0) + 1.0) / 3.0;
+        let stiffness = |x: &D| (min(min(*x, e_a - *x), e_a - 1.0) / (e_a - 1.0) + 1.0) / 3.0;
         if s.relief.any() {
             return s.relieved(|x| stiffness(x) * 1.5);
         }
         let first = -x.re().floor();
         let mut sum = D::zero();
         for k in 0..((x.re().floor() + (e_a.re() - x.re()).floor()) as usize + 1).min(1000) {
-            sum += stiffness(x + (first + k as f64));
+            sum += stiffness(&(x + (first + k as f64)));
         }
-        stiffness(x) / sum
+        stiffness(&x) / sum
     }
 }

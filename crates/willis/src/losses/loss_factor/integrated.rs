@@ -86,14 +86,14 @@ fn lifts<D: Real>(s: &PathOfContact<D>) -> [D; 4] {
         if depth.re() > 0.0 && length.re() > 0.0 { (depth, depth / length) } else { (D::zero(), D::zero()) }
     });
     let e_a = s.contact_ratio();
-    let zero_of = |rest: D, slope: D| if slope.re() > 0.0 { rest / slope } else { D::zero() };
+    let zero_of = |rest: &D, slope: &D| if slope.re() > 0.0 { *rest / *slope } else { D::zero() };
     let ((a, steep_a), (e, steep_e)) = (from_start, from_end);
     let both = a - e + steep_e * (e_a - 1.0);
     [
-        zero_of(a - 1.0, steep_a),
-        e_a - zero_of(e - 1.0, steep_e),
-        zero_of(both - 1.0, steep_a + steep_e),
-        zero_of(both + 1.0, steep_a + steep_e),
+        zero_of(&(a - 1.0), &steep_a),
+        e_a - zero_of(&(e - 1.0), &steep_e),
+        zero_of(&(both - 1.0), &(steep_a + steep_e)),
+        zero_of(&(both + 1.0), &(steep_a + steep_e)),
     ]
 }
 
@@ -120,34 +120,33 @@ impl Law for Integrated {
             let slices = Slices { contact_ratio: e_a, overlap_ratio: e_b, relief: s.relief };
             return slices.moment(pitch_point) * (s.factor() * 2.0);
         }
-        let fraction = |d: D| d - d.re().floor();
-        let (n_a, n_b) = (fraction(e_a), fraction(e_b));
+        let [n_a, n_b] = [e_a, e_b].map(|d| d - d.re().floor());
         // Places, up to whole base pitches, where the sharing has a kink or a step.
         let relieved = s.relief.any();
         let [from_start, from_end] = s.relief.length.map(|l| if relieved { l } else { D::zero() });
         let kinks = [D::zero(), n_a, n_b, n_a + n_b, -n_b, n_a - n_b, e_a / 2.0, from_start, n_a - from_end];
         let lifts = if relieved { lifts(s) } else { [D::zero(); 4] };
-        let next = |x: D| {
+        let next = |x: &D| {
             let mut nearest = e_a;
-            let mut offer = |place: D| {
+            let mut offer = |place: &D| {
                 if place.re() > x.re() + 1e-12 && place.re() < nearest.re() {
-                    nearest = place;
+                    nearest = *place;
                 }
             };
-            offer(pitch_point);
+            offer(&pitch_point);
             if relieved {
-                offer(x + 1.0 / 32.0);
+                offer(&(*x + 1.0 / 32.0));
             }
             for kink in kinks.into_iter().chain(lifts) {
                 let periods = (x.re() - kink.re()).floor();
-                offer(kink + periods + 1.0);
-                offer(kink + periods + 2.0);
+                offer(&(kink + periods + 1.0));
+                offer(&(kink + periods + 2.0));
             }
             nearest
         };
-        let moment = |x: D| {
-            let place = ToothLoad { position: x, contact_ratio: e_a, overlap_ratio: e_b, relief: s.relief };
-            self.sharing.eval(&place) * abs(x - pitch_point)
+        let moment = |x: &D| {
+            let place = ToothLoad { position: *x, contact_ratio: e_a, overlap_ratio: e_b, relief: s.relief };
+            self.sharing.eval(&place) * abs(*x - pitch_point)
         };
         let mut sum = D::zero();
         let mut from = D::zero();
@@ -156,10 +155,10 @@ impl Law for Integrated {
             if from.re() >= e_a.re() || !e_a.re().is_finite() {
                 break;
             }
-            let to = next(from);
+            let to = next(&from);
             let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
             for (node, weight) in GAUSS {
-                sum += (moment(middle + half * node) + moment(middle - half * node)) * half * weight;
+                sum += (moment(&(middle + half * node)) + moment(&(middle - half * node))) * half * weight;
             }
             from = to;
         }

@@ -63,9 +63,9 @@ impl Law for TwoPair {
     };
 
     fn eval<D: Real>(&self, s: &PathOfContact<D>) -> D {
-        let square = |d: D| d * abs(d);
+        let square = |d: &D| *d * abs(*d);
         let [e_1, e_2] = s.e;
-        let sum = square(e_1) + square(e_2) + square(-e_1 + 1.0) + square(-e_2 + 1.0);
+        let sum = square(&e_1) + square(&e_2) + square(&(-e_1 + 1.0)) + square(&(-e_2 + 1.0));
         sum * (s.factor() / 2.0)
     }
 }

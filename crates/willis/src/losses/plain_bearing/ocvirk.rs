@@ -110,15 +110,15 @@ impl Law for Ocvirk {
             return most;
         }
         let e = (number - load(e)) / slope + e;
-        let film = |e: D| {
-            let root = (-(e * e) + 1.0).sqrt();
-            let tangent = root / e * (std::f64::consts::PI / 4.0);
+        let film = |e: &D| {
+            let root = (-(*e * *e) + 1.0).sqrt();
+            let tangent = root / *e * (std::f64::consts::PI / 4.0);
             let sine = tangent / (tangent * tangent + 1.0).sqrt();
-            centred / root + s.clearance * e * s.load * sine * 0.25
+            centred / root + s.clearance * *e * s.load * sine * 0.25
         };
         match e.re() > THIN {
-            true => real::min(film(e), real::max(most, film(D::from(THIN)))),
-            false => film(e),
+            true => real::min(film(&e), real::max(most, film(&D::from(THIN)))),
+            false => film(&e),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The equilibrium of a train in dual numbers: which ends drive is known, so forces solve linear equations; losses and
-//! torques are repeated until derivatives too agree.
+//! The equilibrium of a train in dual numbers, of several quantities at once: which ends drive is known, so forces solve linear
+//! equations; losses and torques are repeated until derivatives too agree, those of each quantity for itself.
 
 use std::borrow::Cow;
 
@@ -13,29 +13,23 @@ use crate::real;
 use crate::statics::SolvedColumn;
 use crate::train::{FRAME, Load, MachineEfficiency, MemberId, Operation, Store, Train, Variator};
 
+use super::lanes::{Asked, Moved, Moving, lane, moving};
+use super::seeded;
+
 /// Most rounds of laws and statics.
 const MOST_ROUNDS: usize = 400;
 /// The error that is left in a derivative, over its size.
 const ACCURACY: f64 = 1e-11;
 
-/// What moves beside the numbers of the train.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Moved {
-    /// Nothing that the operation prescribes.
-    Train,
-    /// Its prescribed speed of this place.
-    Speed(usize),
-    /// Its prescribed torque or power of this place.
-    Load(usize),
-}
+/// What loses, what kind of loss it is, its law, its power.
+type Lost<R> = (String, LossKind, &'static str, R);
 
 /// Powers with their derivative by one quantity, W.
 pub(super) struct Powers {
     pub input: Dual64,
     pub output: Dual64,
     pub loss: Dual64,
-    /// Name, kind, law, power of each loss.
-    pub sources: Vec<(String, LossKind, &'static str, Dual64)>,
+    pub sources: Vec<Lost<Dual64>>,
     pub rounds: usize,
     /// Bound on the error of the derivatives that is left, over their size.
     pub error: f64,
@@ -44,6 +38,11 @@ pub(super) struct Powers {
 impl Powers {
     pub fn efficiency(&self) -> Dual64 {
         if self.loss.re == 0.0 && self.loss.eps == 0.0 { Dual64::from(1.0) } else { self.output / self.input }
+    }
+
+    /// Whether every loss has a slope.
+    pub fn is_finite(&self) -> bool {
+        self.loss.eps.is_finite() && self.sources.iter().all(|s| s.3.eps.is_finite())
     }
 
     /// Derivative of input less output less losses over that of the largest of them: zero up to round-off.
@@ -55,29 +54,29 @@ impl Powers {
 }
 
 /// A point in dual numbers.
-struct State {
-    meshes: Vec<MeshFlow<Dual64>>,
+struct State<R> {
+    meshes: Vec<MeshFlow<R>>,
     /// Of each element behind the meshes: what it asks of its two ends.
-    passing: Vec<[Dual64; 2]>,
-    drags: Vec<Drag<Dual64>>,
+    passing: Vec<[R; 2]>,
+    drags: Vec<Drag<R>>,
 }
 
 /// A machine whose torque is prescribed: torque on its member, power out of the bus.
-struct Driven {
+struct Driven<R> {
     at: [usize; 2],
-    torque: Dual64,
-    draws: Dual64,
+    torque: R,
+    draws: R,
 }
 
 /// What acts on a train from outside, and machines.
-struct Loads {
-    external: Vec<(MemberId, Dual64)>,
-    driven: Vec<Driven>,
+struct Loads<R> {
+    external: Vec<(MemberId, R)>,
+    driven: Vec<Driven<R>>,
 }
 
-impl Loads {
+impl<const N: usize> Loads<Moving<N>> {
     /// Torques on members and buses.
-    fn torques(&self, point: &Point<'_>, speeds: &[Dual64]) -> Vec<(MemberId, Dual64)> {
+    fn torques(&self, point: &Point<'_>, speeds: &[Moving<N>]) -> Vec<(MemberId, Moving<N>)> {
         let mut all = self.external.clone();
         for d in &self.driven {
             let bus = point.c.bus(d.at[0]);
@@ -89,22 +88,52 @@ impl Loads {
 }
 
 /// What is lost on the way.
-struct InForce<'a> {
-    meshes: &'a [[Dual64; 2]],
+struct InForce<'a, R> {
+    meshes: &'a [[R; 2]],
     /// By element behind the meshes: its first end driving, its second end driving.
-    passing: Vec<[Dual64; 2]>,
+    passing: Vec<[R; 2]>,
 }
 
-/// Powers at a point with the derivative by what moves; `None` where the equations have no solution.
-pub(super) fn powers(
+/// Powers at a point with the derivative by each of up to `N` quantities; `None` where the equations have no solution. What is found
+/// of one does not depend on those beside it.
+pub(super) fn powers<const N: usize>(
     train: &Train,
     operation: &Operation,
     point: &Point<'_>,
-    numbers: Numbers<Dual64>,
-    moved: Moved,
-) -> Option<Powers> {
-    let speeds = speeds(train, operation, point, moved);
-    let loads = loads(operation, point, &speeds, &numbers, moved);
+    asked: &[Asked<'_>],
+) -> Vec<Option<Powers>> {
+    let found = side_by_side::<N>(train, operation, point, asked);
+    // Zero times the slope of a neighbour that has none is no number.
+    if asked.len() == 1 || found.iter().all(|own| own.as_ref().is_some_and(Powers::is_finite)) {
+        return found;
+    }
+    asked.iter().flat_map(|own| side_by_side::<N>(train, operation, point, std::slice::from_ref(own))).collect()
+}
+
+fn side_by_side<const N: usize>(
+    train: &Train,
+    operation: &Operation,
+    point: &Point<'_>,
+    asked: &[Asked<'_>],
+) -> Vec<Option<Powers>> {
+    let mut found: Vec<Option<Powers>> = asked.iter().map(|_| None).collect();
+    if let Some(numbers) = seeded::numbers::<N>(train, operation.temperature, asked) {
+        settle(train, operation, point, numbers, asked, &mut found);
+    }
+    found
+}
+
+/// Fills in each quantity in the round in which its derivatives agree; `None` where the equations have no solution.
+fn settle<const N: usize>(
+    train: &Train,
+    operation: &Operation,
+    point: &Point<'_>,
+    numbers: Numbers<Moving<N>>,
+    asked: &[Asked<'_>],
+    found: &mut [Option<Powers>],
+) -> Option<()> {
+    let speeds = speeds(train, operation, point, asked);
+    let loads = loads(operation, point, &speeds, &numbers, asked);
     let given = numbers.efficiencies.clone();
     let variators = numbers.variators.clone();
     let physics = train.depends_on_load().then(|| Physics::with_numbers(Cow::Borrowed(train), numbers));
@@ -113,27 +142,30 @@ pub(super) fn powers(
     let Some(physics) = physics else {
         let eta = InForce { meshes: &given, passing: passing(point, &speeds, &variators, &[]) };
         let state = solve(point, &speeds, &loads, vec![], &eta)?;
-        let total = totals(point, &speeds, &loads, &state);
+        let total = Totals::of(point, &speeds, &loads, &state);
         let sources = state
             .meshes
             .iter()
             .map(|m| (train.meshes[m.mesh.index()].name.clone(), LossKind::Sliding, "given", m.loss));
-        let sources = sources.chain(through_variators(point, &speeds, &loads, &state, &variators));
-        return Some(Powers { sources: sources.collect(), rounds: 1, error: 0.0, ..total });
+        let sources: Vec<_> = sources.chain(through_variators(point, &speeds, &loads, &state, &variators)).collect();
+        for (k, own) in found.iter_mut().enumerate() {
+            *own = Some(total.lane(k, &sources, 1, 0.0));
+        }
+        return Some(());
     };
     // The point itself is the start: what is missing are derivatives.
-    let in_force: Vec<[Dual64; 2]> = (point.c.efficiencies.iter())
-        .map(|e| [Dual64::from(e.forward.to_f64()), Dual64::from(e.backward.to_f64())])
+    let in_force: Vec<[Moving<N>; 2]> = (point.c.efficiencies.iter())
+        .map(|e| [Moving::from(e.forward.to_f64()), Moving::from(e.backward.to_f64())])
         .collect();
-    let forces: Vec<Dual64> = point.forces.iter().map(|f| Dual64::from(*f)).collect();
+    let forces: Vec<Moving<N>> = point.forces.iter().map(|f| Moving::from(*f)).collect();
     let mut meshes = walk(point, &speeds, &forces, &in_force);
     let eta = InForce { meshes: &in_force, passing: passing(point, &speeds, &variators, &[]) };
-    let mut asked = asked(point, &speeds, &forces, &eta);
-    let (mut last, mut q) = (f64::INFINITY, 0.0f64);
-    let mut old: Option<Vec<f64>> = None;
+    let mut passed = through(point, &speeds, &forces, &eta);
+    let mut trends = vec![Trend { last: f64::INFINITY, contraction: 0.0 }; asked.len()];
+    let mut old: Option<Vec<Lost<Moving<N>>>> = None;
     let idle = physics.without_load(&speeds, &meshes, &known);
     for rounds in 1..=MOST_ROUNDS {
-        let step: Step<Dual64> = physics.evaluate_with(&speeds, &meshes, &known, &idle);
+        let step: Step<Moving<N>> = physics.evaluate_with(&speeds, &meshes, &known, &idle);
         let efficiencies = step.efficiencies(train, &given);
         let mut drags = step.drags.clone();
         for (k, v) in train.variators.iter().enumerate().filter(|(_, v)| v.has_bus()) {
@@ -142,61 +174,91 @@ pub(super) fn powers(
                 drags.push(Drag { members: [bus, FRAME], torque: -variators[k].standby / speeds[bus.0] });
             }
         }
-        let eta = InForce { meshes: &efficiencies, passing: passing(point, &speeds, &variators, &asked) };
+        let eta = InForce { meshes: &efficiencies, passing: passing(point, &speeds, &variators, &passed) };
         let state = solve(point, &speeds, &loads, drags, &eta)?;
-        let mut total = totals(point, &speeds, &loads, &state);
-        let drag_losses: Vec<Dual64> = state.drags.iter().map(|d| drag_loss(d, &speeds)).collect();
-        total.sources = physics.parts(&step, &state.meshes, &drag_losses);
-        total.sources.extend(through_variators(point, &speeds, &loads, &state, &variators));
-        // Change of the derivatives since the last round, and the factor by which changes shrink.
-        let new: Vec<f64> = total.sources.iter().map(|s| s.3.eps).collect();
-        let size = new.iter().fold(total.loss.eps.abs(), |a, x| a.max(x.abs()));
-        let change = match &old {
-            Some(old) if old.len() == new.len() => old.iter().zip(&new).fold(0.0f64, |a, (x, y)| a.max((x - y).abs())),
-            _ => f64::INFINITY,
-        };
-        if last.is_finite() && last > 0.0 {
-            q = (change / last).max(0.2 * q);
+        let total = Totals::of(point, &speeds, &loads, &state);
+        let drag_losses: Vec<Moving<N>> = state.drags.iter().map(|d| drag_loss(d, &speeds)).collect();
+        let mut sources = physics.parts(&step, &state.meshes, &drag_losses);
+        sources.extend(through_variators(point, &speeds, &loads, &state, &variators));
+        let comparable = old.as_ref().filter(|old| old.len() == sources.len());
+        for (k, (own, trend)) in found.iter_mut().zip(&mut trends).enumerate().filter(|(_, (own, _))| own.is_none()) {
+            let slope = |s: &Lost<Moving<N>>| lane(&s.3, k).eps;
+            let size = sources.iter().fold(lane(&total.loss, k).eps.abs(), |a, s| a.max(slope(s).abs()));
+            let change = comparable.map_or(f64::INFINITY, |old| {
+                old.iter().zip(&sources).fold(0.0f64, |a, (x, y)| a.max((slope(x) - slope(y)).abs()))
+            });
+            let error = trend.error(change, size);
+            if error <= ACCURACY || rounds == MOST_ROUNDS {
+                *own = Some(total.lane(k, &sources, rounds, error));
+            }
         }
-        last = change;
-        let relative = if size > 0.0 { change / size } else { change };
-        let error = if q < 1.0 { relative / (1.0 - q) } else { relative };
-        if error <= ACCURACY || rounds == MOST_ROUNDS {
-            return Some(Powers { rounds, error, ..total });
+        if found.iter().all(Option::is_some) {
+            break;
         }
-        old = Some(new);
-        (meshes, asked) = (state.meshes, state.passing);
+        old = Some(sources);
+        (meshes, passed) = (state.meshes, state.passing);
     }
-    None
+    Some(())
+}
+
+/// How the derivatives by one quantity change from round to round.
+#[derive(Clone, Copy)]
+struct Trend {
+    last: f64,
+    /// The factor by which changes shrink.
+    contraction: f64,
+}
+
+impl Trend {
+    /// The error that is left after one more change, over the size of the derivatives.
+    fn error(&mut self, change: f64, size: f64) -> f64 {
+        if self.last.is_finite() && self.last > 0.0 {
+            self.contraction = (change / self.last).max(0.2 * self.contraction);
+        }
+        self.last = change;
+        let relative = if size > 0.0 { change / size } else { change };
+        if self.contraction < 1.0 { relative / (1.0 - self.contraction) } else { relative }
+    }
 }
 
 /// Speeds of all members: linear in what is prescribed.
-fn speeds(train: &Train, operation: &Operation, point: &Point<'_>, moved: Moved) -> Vec<Dual64> {
+fn speeds<const N: usize>(
+    train: &Train,
+    operation: &Operation,
+    point: &Point<'_>,
+    asked: &[Asked<'_>],
+) -> Vec<Moving<N>> {
     // A bus turns as it does: a power is a torque on it, whatever its speed.
     let values = (0..point.c.node_of.len()).map(|m| point.motion.si(MemberId(m)).unwrap_or(0.0));
-    let mut speeds: Vec<Dual64> = values.map(Dual64::from).collect();
-    if let Moved::Speed(k) = moved {
-        let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
-        for (speed, factors) in speeds.iter_mut().take(train.members.len()).zip(point.c.transfer(&prescribed).speeds) {
-            speed.eps = factors.map_or(0.0, |f| f[k].to_f64());
+    let mut speeds: Vec<Moving<N>> = values.map(Moving::from).collect();
+    let prescribed = |own: &Asked<'_>| match own.moved {
+        Moved::Speed(place) => Some(place),
+        _ => None,
+    };
+    if asked.iter().any(|own| prescribed(own).is_some()) {
+        let members: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+        for (speed, factors) in speeds.iter_mut().take(train.members.len()).zip(point.c.transfer(&members).speeds) {
+            let Some(factors) = factors else { continue };
+            let rate = |k: usize| asked.get(k).and_then(prescribed).map_or(0.0, |place| factors[place].to_f64());
+            *speed = moving(speed.re, rate);
         }
     }
     speeds
 }
 
 /// Prescribed torques, stores and machines.
-fn loads(
+fn loads<const N: usize>(
     operation: &Operation,
     point: &Point<'_>,
-    speeds: &[Dual64],
-    numbers: &Numbers<Dual64>,
-    moved: Moved,
-) -> Loads {
+    speeds: &[Moving<N>],
+    numbers: &Numbers<Moving<N>>,
+    asked: &[Asked<'_>],
+) -> Loads<Moving<N>> {
     let (mut all, mut driven) = (Vec::new(), Vec::new());
     let train = point.c.train;
     for (k, v) in numbers.variators.iter().enumerate().filter(|(k, _)| train.variators[*k].has_bus()) {
         let power = match operation.stores.iter().find(|(of, _)| *of == k) {
-            Some((_, Store::Power(own))) => Some(Dual64::from(own.si())),
+            Some((_, Store::Power(own))) => Some(Moving::from(own.si())),
             Some((_, Store::Free)) => None,
             None => v.store,
         };
@@ -207,9 +269,9 @@ fn loads(
         let machine = &train.variators[at[0]].machines()[at[1]];
         let w = speeds[machine.member.0];
         let torque = match load {
-            Load::Torque(q) => Dual64::from(q.si()),
-            Load::Power(_) if w.re == 0.0 => Dual64::from(0.0),
-            Load::Power(p) => Dual64::from(p.si()) / w,
+            Load::Torque(q) => Moving::from(q.si()),
+            Load::Power(_) if w.re == 0.0 => Moving::from(0.0),
+            Load::Power(p) => Moving::from(p.si()) / w,
         };
         let power = torque * w;
         let [motoring, generating] = match &machine.efficiency {
@@ -219,12 +281,13 @@ fn loads(
         let draws = if power.re > 0.0 { power / motoring } else { power * generating };
         driven.push(Driven { at: *at, torque, draws });
     }
-    for (k, (member, load)) in operation.loads.iter().enumerate() {
-        let own = |value: f64| Dual64::new(value, if moved == Moved::Load(k) { 1.0 } else { 0.0 });
+    for (place, (member, load)) in operation.loads.iter().enumerate() {
+        let moves = |k: usize| asked.get(k).is_some_and(|own| own.moved == Moved::Load(place));
+        let own = |value: f64| moving(value, |k| f64::from(u8::from(moves(k))));
         let torque = match load {
             Load::Torque(q) => own(q.si()),
             // No power at rest: no torque.
-            Load::Power(_) if speeds[member.0].re == 0.0 => Dual64::from(0.0),
+            Load::Power(_) if speeds[member.0].re == 0.0 => Moving::from(0.0),
             Load::Power(p) => own(p.si()) / speeds[member.0],
         };
         all.push((*member, torque));
@@ -234,12 +297,12 @@ fn loads(
 
 /// Efficiencies of the elements behind the meshes, first end driving and second end driving; those of a map where the
 /// machine runs, by what the elements asked of their ends in the round before.
-fn passing(
+fn passing<const N: usize>(
     point: &Point<'_>,
-    speeds: &[Dual64],
-    variators: &[VariatorNumbers<Dual64>],
-    asked: &[[Dual64; 2]],
-) -> Vec<[Dual64; 2]> {
+    speeds: &[Moving<N>],
+    variators: &[VariatorNumbers<Moving<N>>],
+    asked: &[[Moving<N>; 2]],
+) -> Vec<[Moving<N>; 2]> {
     let of = |(k, coupling): (usize, &Coupling)| {
         let own = &variators[coupling.variator].efficiencies;
         let Some(machine) = coupling.machine else { return own[0] };
@@ -258,11 +321,11 @@ fn passing(
 }
 
 /// The coefficients of the ends of an element behind the meshes, as the speeds make them.
-fn coefficients(point: &Point<'_>, speeds: &[Dual64], k: usize) -> [Dual64; 2] {
+fn coefficients<const N: usize>(point: &Point<'_>, speeds: &[Moving<N>], k: usize) -> [Moving<N>; 2] {
     let element = &point.c.elements[point.c.gears().len() + k];
     let [p, q] = [speeds[element.p.0], speeds[element.q.0]];
     match point.c.couplings[k].machine {
-        Some(_) => [Dual64::from(1.0), -p / q],
+        Some(_) => [Moving::from(1.0), -p / q],
         None => {
             let most = p.re.abs().max(q.re.abs());
             [q / most, -p / most]
@@ -271,7 +334,12 @@ fn coefficients(point: &Point<'_>, speeds: &[Dual64], k: usize) -> [Dual64; 2] {
 }
 
 /// What elements behind the meshes ask of their ends.
-fn asked(point: &Point<'_>, speeds: &[Dual64], forces: &[Dual64], eta: &InForce<'_>) -> Vec<[Dual64; 2]> {
+fn through<const N: usize>(
+    point: &Point<'_>,
+    speeds: &[Moving<N>],
+    forces: &[Moving<N>],
+    eta: &InForce<'_, Moving<N>>,
+) -> Vec<[Moving<N>; 2]> {
     let gears = point.c.gears().len();
     let of = |k: usize| {
         let rho = passed(point.known().p_drives(gears + k), eta.passing[k]);
@@ -281,22 +349,22 @@ fn asked(point: &Point<'_>, speeds: &[Dual64], forces: &[Dual64], eta: &InForce<
     (0..point.c.couplings.len()).map(of).collect()
 }
 
-fn passed(p_drives: Option<bool>, [first, second]: [Dual64; 2]) -> Dual64 {
+fn passed<const N: usize>(p_drives: Option<bool>, [first, second]: [Moving<N>; 2]) -> Moving<N> {
     match p_drives {
-        None => Dual64::from(1.0),
+        None => Moving::from(1.0),
         Some(true) => first,
         Some(false) => second.recip(),
     }
 }
 
 /// What variators lose, standby losses included.
-fn through_variators(
+fn through_variators<const N: usize>(
     point: &Point<'_>,
-    speeds: &[Dual64],
-    loads: &Loads,
-    state: &State,
-    numbers: &[VariatorNumbers<Dual64>],
-) -> Vec<(String, LossKind, &'static str, Dual64)> {
+    speeds: &[Moving<N>],
+    loads: &Loads<Moving<N>>,
+    state: &State<Moving<N>>,
+    numbers: &[VariatorNumbers<Moving<N>>],
+) -> Vec<Lost<Moving<N>>> {
     let gears = point.c.gears().len();
     let of = |(k, v): (usize, &Variator)| {
         let mut loss = numbers[k].standby;
@@ -316,16 +384,16 @@ fn through_variators(
 }
 
 /// Forces that balance loads and drags with these efficiencies, followed through the meshes.
-fn solve(
+fn solve<const N: usize>(
     point: &Point<'_>,
-    speeds: &[Dual64],
-    loads: &Loads,
-    drags: Vec<Drag<Dual64>>,
-    eta: &InForce<'_>,
-) -> Option<State> {
+    speeds: &[Moving<N>],
+    loads: &Loads<Moving<N>>,
+    drags: Vec<Drag<Moving<N>>>,
+    eta: &InForce<'_, Moving<N>>,
+) -> Option<State<Moving<N>>> {
     let gears = point.c.gears().len();
     let known = point.known();
-    let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, Dual64)| {
+    let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, Moving<N>)| {
         let element = &point.c.elements[column.element];
         if let Some(k) = column.element.checked_sub(gears) {
             let [a, b] = coefficients(point, speeds, k);
@@ -341,71 +409,86 @@ fn solve(
     let torques = torques.chain(drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]));
     let forces = known.forces(entries, torques.map(|(member, torque)| (point.c.node(member), torque)))?;
     let meshes = walk(point, speeds, &forces, eta.meshes);
-    Some(State { meshes, passing: asked(point, speeds, &forces, eta), drags })
+    Some(State { meshes, passing: through(point, speeds, &forces, eta), drags })
 }
 
-fn walk(
+fn walk<const N: usize>(
     point: &Point<'_>,
-    speeds: &[Dual64],
-    forces: &[Dual64],
-    efficiencies: &[[Dual64; 2]],
-) -> Vec<MeshFlow<Dual64>> {
+    speeds: &[Moving<N>],
+    forces: &[Moving<N>],
+    efficiencies: &[[Moving<N>; 2]],
+) -> Vec<MeshFlow<Moving<N>>> {
     // Idle elements have no driver.
-    let acts = |e: usize| forces[e].re != 0.0 || forces[e].eps != 0.0;
+    let acts = |e: usize| forces[e].re != 0.0 || (0..N).any(|k| lane(&forces[e], k).eps != 0.0);
     point.known().meshes(forces, speeds, efficiencies, |e| point.known().p_drives(e).filter(|_| acts(e)))
 }
 
 /// Torque times speed of the second member relative to the first.
-fn drag_loss(d: &Drag<Dual64>, speeds: &[Dual64]) -> Dual64 {
+fn drag_loss<const N: usize>(d: &Drag<Moving<N>>, speeds: &[Moving<N>]) -> Moving<N> {
     d.torque * (speeds[d.members[1].0] - speeds[d.members[0].0])
 }
 
-/// Input, output and loss.
-fn totals(point: &Point<'_>, speeds: &[Dual64], loads: &Loads, state: &State) -> Powers {
-    let train = point.c.train;
-    let zero = Dual64::from(0.0);
-    // What the meshes ask of each member, less what drags exert on it.
-    let mut demand = vec![zero; speeds.len()];
-    let mut passed = zero;
-    for ([p, q], element) in state.passing.iter().zip(&point.c.elements[point.c.gears().len()..]) {
-        demand[element.p.0] += *p;
-        demand[element.q.0] += *q;
-        passed += *p * speeds[element.p.0] + *q * speeds[element.q.0];
+/// What enters and leaves, and all losses.
+struct Totals<const N: usize> {
+    /// Powers of what acts from outside, by member.
+    powers: Vec<Moving<N>>,
+    loss: Moving<N>,
+}
+
+impl<const N: usize> Totals<N> {
+    fn of(point: &Point<'_>, speeds: &[Moving<N>], loads: &Loads<Moving<N>>, state: &State<Moving<N>>) -> Self {
+        let train = point.c.train;
+        let zero = Moving::from(0.0);
+        // What the meshes ask of each member, less what drags exert on it.
+        let mut demand = vec![zero; speeds.len()];
+        let mut passed = zero;
+        for ([p, q], element) in state.passing.iter().zip(&point.c.elements[point.c.gears().len()..]) {
+            demand[element.p.0] += *p;
+            demand[element.q.0] += *q;
+            passed += *p * speeds[element.p.0] + *q * speeds[element.q.0];
+        }
+        for d in &loads.driven {
+            let member = train.variators[d.at[0]].machines()[d.at[1]].member;
+            let bus = point.c.bus(d.at[0]);
+            demand[member.0] -= d.torque;
+            demand[bus.0] += d.draws / speeds[bus.0];
+            passed += d.draws - d.torque * speeds[member.0];
+        }
+        for m in &state.meshes {
+            let mesh = &train.meshes[m.mesh.index()];
+            let members = [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier];
+            members.into_iter().zip(m.torques).for_each(|(member, torque)| demand[member.0] += torque);
+        }
+        for d in &state.drags {
+            demand[d.members[0].0] -= d.torque;
+            demand[d.members[1].0] += d.torque;
+        }
+        let mut external = vec![zero; speeds.len()];
+        for (member, torque) in &loads.external {
+            external[member.0] = *torque;
+        }
+        for member in &point.open {
+            let Some(node) = point.c.node(*member) else { continue };
+            let own = |m: &usize| !point.c.inner[*m] && point.c.node_of[*m] == Some(node);
+            external[member.0] = (1..demand.len()).filter(own).fold(zero, |sum, m| sum + demand[m] - external[m]);
+        }
+        let powers = external.iter().zip(speeds).map(|(t, w)| *t * *w).collect();
+        let loss = state.meshes.iter().fold(passed, |sum, m| sum + m.loss);
+        let loss = state.drags.iter().fold(loss, |sum, d| sum + drag_loss(d, speeds));
+        Self { powers, loss }
     }
-    for d in &loads.driven {
-        let member = train.variators[d.at[0]].machines()[d.at[1]].member;
-        let bus = point.c.bus(d.at[0]);
-        demand[member.0] -= d.torque;
-        demand[bus.0] += d.draws / speeds[bus.0];
-        passed += d.draws - d.torque * speeds[member.0];
+
+    /// With the derivatives of one lane.
+    fn lane(&self, k: usize, sources: &[Lost<Moving<N>>], rounds: usize, error: f64) -> Powers {
+        let largest = self.powers.iter().fold(0.0f64, |a, p| a.max(p.re.abs()));
+        // What stands still takes or gives power as soon as it moves: on the side of a rising quantity.
+        let side = |p: &Dual64| if p.re.abs() > 1e-12 * largest { p.re } else { p.eps };
+        let sum = |sign: f64| {
+            let wanted = self.powers.iter().map(|p| lane(p, k)).filter(|p| side(p) * sign > 0.0);
+            wanted.fold(Dual64::from(0.0), |sum, p| sum + p * sign)
+        };
+        let sources =
+            sources.iter().map(|(name, kind, law, loss)| (name.clone(), *kind, *law, lane(loss, k))).collect();
+        Powers { input: sum(1.0), output: sum(-1.0), loss: lane(&self.loss, k), sources, rounds, error }
     }
-    for m in &state.meshes {
-        let mesh = &train.meshes[m.mesh.index()];
-        let members = [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier];
-        members.into_iter().zip(m.torques).for_each(|(member, torque)| demand[member.0] += torque);
-    }
-    for d in &state.drags {
-        demand[d.members[0].0] -= d.torque;
-        demand[d.members[1].0] += d.torque;
-    }
-    let mut external = vec![zero; speeds.len()];
-    for (member, torque) in &loads.external {
-        external[member.0] = *torque;
-    }
-    for member in &point.open {
-        let Some(node) = point.c.node(*member) else { continue };
-        let own = |m: &usize| !point.c.inner[*m] && point.c.node_of[*m] == Some(node);
-        external[member.0] = (1..demand.len()).filter(own).fold(zero, |sum, m| sum + demand[m] - external[m]);
-    }
-    let powers: Vec<Dual64> = external.iter().zip(speeds).map(|(t, w)| *t * *w).collect();
-    let largest = powers.iter().fold(0.0f64, |a, p| a.max(p.re.abs()));
-    // What stands still takes or gives power as soon as it moves: on the side of a rising quantity.
-    let side = |p: &Dual64| if p.re.abs() > 1e-12 * largest { p.re } else { p.eps };
-    let sum = |sign: f64| {
-        let wanted = powers.iter().filter(|p| side(p) * sign > 0.0);
-        wanted.fold(zero, |sum, p| sum + *p * sign)
-    };
-    let loss = state.meshes.iter().fold(passed, |sum, m| sum + m.loss);
-    let loss = state.drags.iter().fold(loss, |sum, d| sum + drag_loss(d, speeds));
-    Powers { input: sum(1.0), output: sum(-1.0), loss, sources: vec![], rounds: 0, error: 0.0 }
 }

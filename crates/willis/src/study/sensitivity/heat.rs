@@ -12,8 +12,8 @@ use crate::heat::network::imbalance;
 use crate::train::heat::Heat;
 use crate::train::{HeatNumber, Operation, Slot, Train};
 
-use super::balance::{Moved, Powers, powers};
-use super::seeded;
+use super::balance::{Powers, powers};
+use super::lanes::{Asked, LANES, Moved};
 
 /// How an operating point follows its oil temperature.
 pub(super) struct Following<'t> {
@@ -30,8 +30,8 @@ impl<'t> Following<'t> {
     /// `None` where the temperature is given, or nothing follows.
     pub fn new(train: &'t Train, operation: &Operation, point: &Point<'_>, report: &HeatReport) -> Option<Self> {
         let heat = train.heat().filter(|_| report.basis == HeatBasis::Balance)?;
-        let numbers = seeded::numbers(train, operation.temperature, &[(Slot::Temperature, 1.0)])?;
-        let by_temperature = powers(train, operation, point, numbers, Moved::Train)?;
+        let asked = Asked { slots: &[(Slot::Temperature, 1.0)], moved: Moved::Train };
+        let by_temperature = powers::<LANES>(train, operation, point, &[asked]).pop()??;
         let made: Vec<f64> = heat_made(train, heat, &by_temperature).iter().map(|p| p.re).collect();
         let at = heat.at(report.oil_k, &made).ok()?;
         let mut following = Self { train, heat, at, by_temperature, slope: 0.0 };

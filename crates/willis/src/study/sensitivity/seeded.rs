@@ -1,6 +1,4 @@
-//! The numbers of a train with the derivative by one of them: what is given, and all that follows from it.
-
-use num_dual::Dual64;
+//! The numbers of a train with the derivative by some of them: what is given, and all that follows from it.
 
 use crate::catalogue::oil::Viscosity;
 use crate::geometry::{Pair, PairData, Tip};
@@ -11,20 +9,24 @@ use crate::train::{
     BEVEL_WIDTH, BearingNumber, Jet, LossPart, PumpNumber, RotorNumber, Slot, Teeth, TipRelief, Train, steel_mass,
 };
 
-/// A number that nothing depends on.
-fn constant(value: f64) -> Dual64 {
-    Dual64::new(value, 0.0)
-}
+use super::lanes::{Asked, Moving, moving};
 
-/// The numbers of a train in which the given slots move together, each at its rate; `None` where the geometry stands on an edge of what
-/// is possible.
-pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f64)]) -> Option<Numbers<Dual64>> {
+/// The numbers of a train in which the slots of each of up to `N` quantities move together, each at its rate; `None` where the
+/// geometry stands on an edge of what is possible.
+pub(super) fn numbers<const N: usize>(
+    train: &Train,
+    temperature: Option<f64>,
+    asked: &[Asked<'_>],
+) -> Option<Numbers<Moving<N>>> {
     let plain = Numbers::of(train, temperature);
     let seeded = |slot: Slot, value: f64| {
-        Dual64::new(value, slots.iter().find(|(own, _)| *own == slot).map_or(0.0, |(_, rate)| *rate))
+        moving(value, |k| {
+            let slots = asked.get(k).map_or(&[][..], |own| own.slots);
+            slots.iter().find(|(own, _)| *own == slot).map_or(0.0, |(_, rate)| *rate)
+        })
     };
 
-    let mut teeth: Vec<Option<Teeth<Dual64>>> = Vec::with_capacity(train.meshes.len());
+    let mut teeth: Vec<Option<Teeth<Moving<N>>>> = Vec::with_capacity(train.meshes.len());
     for (j, mesh) in train.meshes.iter().enumerate() {
         let Some(t) = &mesh.teeth else {
             teeth.push(None);
@@ -74,7 +76,7 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
             }),
         }));
     }
-    let bearings: Vec<MountNumbers<Dual64>> = train
+    let bearings: Vec<MountNumbers<Moving<N>>> = train
         .bearings
         .iter()
         .zip(&plain.bearings)
@@ -82,7 +84,7 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
         .map(|(k, (mount, own))| {
             use BearingNumber as B;
             let of = |number: B, value: f64| seeded(Slot::Bearing(k, number), value);
-            let mut data = own.data.lift::<Dual64>();
+            let mut data = own.data.lift::<Moving<N>>();
             data.bore = of(B::Bore, own.data.bore);
             data.outside_diameter = of(B::OutsideDiameter, own.data.outside_diameter);
             data.width = of(B::Width, own.data.width);
@@ -91,7 +93,7 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
             if mount.bearing.element_diameter.is_none() {
                 // Taken as a share of D − d.
                 let share = own.data.element_diameter / (own.data.outside_diameter - own.data.bore);
-                data.element_diameter.eps = share * (data.outside_diameter.eps - data.bore.eps);
+                data.element_diameter.eps = (data.outside_diameter.eps - data.bore.eps) * share;
             }
             MountNumbers {
                 data,
@@ -110,7 +112,7 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
         let orbit = teeth[planet.mesh.index()].as_ref()?.pair.centre_distance;
         let mass = if planet.estimated {
             let bearing = train.bearings.iter().position(|b| b.members.contains(&planet.member));
-            let hole = bearing.map_or(constant(0.0), |b| bearings[b].data.outside_diameter / 2.0);
+            let hole = bearing.map_or(Moving::from_re(0.0), |b| bearings[b].data.outside_diameter / 2.0);
             steel_mass(&train.meshes, planet.member, hole, &|j| teeth[j].clone())
         } else {
             seeded(Slot::Mass(k), planet.mass)
@@ -118,7 +120,7 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
         planets.push([orbit, mass]);
     }
     let oil = train.lubrication.as_ref().zip(plain.oil).map(|(l, state)| {
-        let mut curves = l.oil.curves::<Dual64>();
+        let mut curves = l.oil.curves::<Moving<N>>();
         let of = |wanted: Slot| train.inputs.iter().find(|i| i.slots.contains(&wanted)).map(|i| i.value);
         if let (Some(cold), Some(hot)) = (of(Slot::Viscosity40), of(Slot::Viscosity100)) {
             curves.viscosity = Viscosity::through(seeded(Slot::Viscosity40, cold), seeded(Slot::Viscosity100, hot));
@@ -202,8 +204,12 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[(Slot, f
 }
 
 /// The data of a pair of teeth with the derivative by the slots.
-fn pair_data(plain: &PairData, j: usize, seeded: &dyn Fn(Slot, f64) -> Dual64) -> PairData<Dual64> {
-    let mut data = plain.lift::<Dual64>();
+fn pair_data<const N: usize>(
+    plain: &PairData,
+    j: usize,
+    seeded: &dyn Fn(Slot, f64) -> Moving<N>,
+) -> PairData<Moving<N>> {
+    let mut data = plain.lift::<Moving<N>>();
     data.module = seeded(Slot::Module(j), plain.module);
     data.pressure_angle = seeded(Slot::PressureAngle(j), plain.pressure_angle);
     data.helix = seeded(Slot::Helix(j), plain.helix);
@@ -217,7 +223,11 @@ fn pair_data(plain: &PairData, j: usize, seeded: &dyn Fn(Slot, f64) -> Dual64) -
                 coefficient: seeded(Slot::Addendum(j, k), coefficient),
                 alteration: seeded(Slot::TipAlteration(j, k), alteration),
             },
-            Tip::Radius(radius) => Tip::Radius(Dual64::new(radius, seeded(Slot::TipDiameter(j, k), radius).eps / 2.0)),
+            Tip::Radius(radius) => {
+                let mut tip = seeded(Slot::TipDiameter(j, k), radius);
+                tip.eps /= 2.0;
+                Tip::Radius(tip)
+            }
         };
     }
     data
