@@ -14,9 +14,6 @@ mod heat;
 mod lanes;
 mod seeded;
 
-use std::collections::VecDeque;
-use std::iter;
-
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{self, HeatBasis, Margin, Point, Selection, Verdict};
@@ -360,7 +357,7 @@ pub(super) fn loss_by(
     let mut slopes = Vec::with_capacity(quantities.len());
     let slots: Vec<[(Slot, f64); 1]> = quantities.iter().map(|slot| [(*slot, 1.0)]).collect();
     let asked: Vec<Asked<'_>> = slots.iter().map(|slots| Asked { slots, moved: Moved::Train }).collect();
-    let found = asked.chunks(LANES).flat_map(|group| powers::<LANES>(train, operation, point, group));
+    let found = asked.chunks(LANES).flat_map(|group| powers(train, operation, point, group));
     for (own, found) in asked.iter().zip(found) {
         let Some(mut found) = found else { return Ok(None) };
         if let Some(following) = &following {
@@ -425,28 +422,25 @@ fn of_operation(
     let mut checks = Checks { balance_residual: 0.0, rounds: 0, error: 0.0 };
     // A temperature that follows is moved by the others.
     let held = |quantity: &Quantity| follows && quantity.slots.iter().any(|(s, _)| *s == Slot::Temperature);
-    let mut wanted: VecDeque<(Quantity, Option<String>)> = (quantities(train, operation).into_iter())
+    let wanted: Vec<(Quantity, Option<String>)> = (quantities(train, operation).into_iter())
         .filter(|quantity| !held(quantity))
         .map(|quantity| {
             let edge = edge(train, operation, point, &quantity);
             (quantity, edge)
         })
         .collect();
-    // One after the other as they are told, as many at once as fit.
-    let mut found = VecDeque::new();
-    while let Some((quantity, edge)) = wanted.pop_front() {
+    let asked: Vec<Asked<'_>> =
+        wanted.iter().filter(|(_, edge)| edge.is_none()).map(|(quantity, _)| quantity.asked()).collect();
+    let mut all_found = asked.chunks(LANES).flat_map(|group| powers(train, operation, point, group));
+    for (quantity, edge) in &wanted {
+        let without = |why: &str| (quantity.name.clone(), why.to_owned());
         if let Some(why) = edge {
-            all.without_derivative.push((quantity.name, why));
+            all.without_derivative.push(without(why));
             continue;
         }
-        if found.is_empty() {
-            let smooth = wanted.iter().filter(|(_, edge)| edge.is_none()).map(|(quantity, _)| quantity);
-            let group: Vec<Asked<'_>> = iter::once(&quantity).chain(smooth).take(LANES).map(Quantity::asked).collect();
-            found.extend(powers::<LANES>(train, operation, point, &group));
-        }
-        let Some(mut found) = found.pop_front().flatten() else {
+        let Some(mut found) = all_found.next().flatten() else {
             let why = "the geometry or the equilibrium stands on an edge of what is possible";
-            all.without_derivative.push((quantity.name, why.into()));
+            all.without_derivative.push(without(why));
             continue;
         };
         let finite = found.is_finite();
@@ -455,7 +449,7 @@ fn of_operation(
                 true => format!("losses and torques did not agree: {:.1e} of the derivative is left", found.error),
                 false => "a law has no slope here".to_owned(),
             };
-            all.without_derivative.push((quantity.name, why));
+            all.without_derivative.push(without(&why));
             continue;
         }
         checks.balance_residual = checks.balance_residual.max(found.residual());
@@ -502,7 +496,7 @@ fn starts_to_move(train: &Train, operation: &Operation, point: &Point<'_>, moved
 }
 
 /// What a quantity does, in the form in which it is told; its name where it does nothing.
-fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, String> {
+fn told(quantity: &Quantity, found: &Powers) -> Result<QuantitySensitivity, String> {
     let (step, step_size) = quantity.step();
     let size = NO_EFFECT * found.input.re.abs().max(found.loss.re.abs());
     let moves = |x: f64| (x * step_size).abs() > size;
@@ -511,7 +505,7 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
         && !found.sources.iter().any(|s| moves(s.3.eps))
         && efficiency.is_none_or(|e| (e * step_size).abs() <= NO_EFFECT);
     if none {
-        return Err(quantity.name);
+        return Err(quantity.name.clone());
     }
     let most = found.sources.iter().fold(0.0f64, |a, s| a.max(s.3.eps.abs()));
     let mut sources: Vec<SourceChange> = (found.sources.iter())
@@ -526,12 +520,12 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
     sources.sort_by(|a, b| b.change_w.abs().total_cmp(&a.change_w.abs()));
     let loss = found.loss;
     Ok(QuantitySensitivity {
-        name: quantity.name,
+        name: quantity.name.clone(),
         value: quantity.value,
         unit: quantity.unit.to_owned(),
         assumed: quantity.assumed,
-        together: quantity.together,
-        opposite: quantity.opposite,
+        together: quantity.together.clone(),
+        opposite: quantity.opposite.clone(),
         step,
         step_size,
         efficiency_derivative: efficiency,
@@ -750,7 +744,7 @@ mod tests {
                     all.iter().filter(|q| edge(&train, operation, point, q).is_none()).map(Quantity::asked).collect();
                 assert!(asked.len() > LANES, "{}", report.name);
                 let found = |group: &[Asked<'_>]| -> Vec<Option<Powers>> {
-                    group.chunks(LANES).flat_map(|g| powers::<LANES>(&train, operation, point, g)).collect()
+                    group.chunks(LANES).flat_map(|g| powers(&train, operation, point, g)).collect()
                 };
                 let alone: Vec<Powers> =
                     asked.iter().map(|own| found(std::slice::from_ref(own)).remove(0).unwrap()).collect();
@@ -760,7 +754,7 @@ mod tests {
                 }
                 let none = [(Slot::Temperature, f64::NAN)];
                 let without = Asked { slots: &none, moved: Moved::Train };
-                let spoiled: Vec<Asked<'_>> = iter::once(without).chain(asked.iter().copied()).collect();
+                let spoiled: Vec<Asked<'_>> = std::iter::once(without).chain(asked.iter().copied()).collect();
                 let back: Vec<Asked<'_>> = asked.iter().rev().copied().collect();
                 for (own, beside) in [
                     (found(&asked), alone.iter().collect::<Vec<_>>()),

@@ -13,7 +13,7 @@ use crate::real;
 use crate::statics::SolvedColumn;
 use crate::train::{FRAME, Load, MachineEfficiency, MemberId, Operation, Store, Train, Variator};
 
-use super::lanes::{Asked, Moved, Moving, lane, moving};
+use super::lanes::{Asked, LANES, Moved, Moving, lane, moving};
 use super::seeded;
 
 /// Most rounds of laws and statics.
@@ -74,9 +74,9 @@ struct Loads<R> {
     driven: Vec<Driven<R>>,
 }
 
-impl<const N: usize> Loads<Moving<N>> {
+impl Loads<Moving> {
     /// Torques on members and buses.
-    fn torques(&self, point: &Point<'_>, speeds: &[Moving<N>]) -> Vec<(MemberId, Moving<N>)> {
+    fn torques(&self, point: &Point<'_>, speeds: &[Moving]) -> Vec<(MemberId, Moving)> {
         let mut all = self.external.clone();
         for d in &self.driven {
             let bus = point.c.bus(d.at[0]);
@@ -94,41 +94,36 @@ struct InForce<'a, R> {
     passing: Vec<[R; 2]>,
 }
 
-/// Powers at a point with the derivative by each of up to `N` quantities; `None` where the equations have no solution. What is found
+/// Powers at a point with the derivative by each of up to [`LANES`] quantities; `None` where the equations have no solution. What is found
 /// of one does not depend on those beside it.
-pub(super) fn powers<const N: usize>(
+pub(super) fn powers(
     train: &Train,
     operation: &Operation,
     point: &Point<'_>,
     asked: &[Asked<'_>],
 ) -> Vec<Option<Powers>> {
-    let found = side_by_side::<N>(train, operation, point, asked);
+    let found = side_by_side(train, operation, point, asked);
     // Zero times the slope of a neighbour that has none is no number.
-    if asked.len() == 1 || found.iter().all(|own| own.as_ref().is_some_and(Powers::is_finite)) {
+    if LANES == 1 || asked.len() == 1 || found.iter().all(|own| own.as_ref().is_some_and(Powers::is_finite)) {
         return found;
     }
-    asked.iter().flat_map(|own| side_by_side::<N>(train, operation, point, std::slice::from_ref(own))).collect()
+    asked.iter().flat_map(|own| side_by_side(train, operation, point, std::slice::from_ref(own))).collect()
 }
 
-fn side_by_side<const N: usize>(
-    train: &Train,
-    operation: &Operation,
-    point: &Point<'_>,
-    asked: &[Asked<'_>],
-) -> Vec<Option<Powers>> {
+fn side_by_side(train: &Train, operation: &Operation, point: &Point<'_>, asked: &[Asked<'_>]) -> Vec<Option<Powers>> {
     let mut found: Vec<Option<Powers>> = asked.iter().map(|_| None).collect();
-    if let Some(numbers) = seeded::numbers::<N>(train, operation.temperature, asked) {
+    if let Some(numbers) = seeded::numbers(train, operation.temperature, asked) {
         settle(train, operation, point, numbers, asked, &mut found);
     }
     found
 }
 
 /// Fills in each quantity in the round in which its derivatives agree; `None` where the equations have no solution.
-fn settle<const N: usize>(
+fn settle(
     train: &Train,
     operation: &Operation,
     point: &Point<'_>,
-    numbers: Numbers<Moving<N>>,
+    numbers: Numbers<Moving>,
     asked: &[Asked<'_>],
     found: &mut [Option<Powers>],
 ) -> Option<()> {
@@ -154,18 +149,18 @@ fn settle<const N: usize>(
         return Some(());
     };
     // The point itself is the start: what is missing are derivatives.
-    let in_force: Vec<[Moving<N>; 2]> = (point.c.efficiencies.iter())
+    let in_force: Vec<[Moving; 2]> = (point.c.efficiencies.iter())
         .map(|e| [Moving::from(e.forward.to_f64()), Moving::from(e.backward.to_f64())])
         .collect();
-    let forces: Vec<Moving<N>> = point.forces.iter().map(|f| Moving::from(*f)).collect();
+    let forces: Vec<Moving> = point.forces.iter().map(|f| Moving::from(*f)).collect();
     let mut meshes = walk(point, &speeds, &forces, &in_force);
     let eta = InForce { meshes: &in_force, passing: passing(point, &speeds, &variators, &[]) };
     let mut passed = through(point, &speeds, &forces, &eta);
     let mut trends = vec![Trend { last: f64::INFINITY, contraction: 0.0 }; asked.len()];
-    let mut old: Option<Vec<Lost<Moving<N>>>> = None;
+    let mut old: Option<Vec<Lost<Moving>>> = None;
     let idle = physics.without_load(&speeds, &meshes, &known);
     for rounds in 1..=MOST_ROUNDS {
-        let step: Step<Moving<N>> = physics.evaluate_with(&speeds, &meshes, &known, &idle);
+        let step: Step<Moving> = physics.evaluate_with(&speeds, &meshes, &known, &idle);
         let efficiencies = step.efficiencies(train, &given);
         let mut drags = step.drags.clone();
         for (k, v) in train.variators.iter().enumerate().filter(|(_, v)| v.has_bus()) {
@@ -177,12 +172,12 @@ fn settle<const N: usize>(
         let eta = InForce { meshes: &efficiencies, passing: passing(point, &speeds, &variators, &passed) };
         let state = solve(point, &speeds, &loads, drags, &eta)?;
         let total = Totals::of(point, &speeds, &loads, &state);
-        let drag_losses: Vec<Moving<N>> = state.drags.iter().map(|d| drag_loss(d, &speeds)).collect();
+        let drag_losses: Vec<Moving> = state.drags.iter().map(|d| drag_loss(d, &speeds)).collect();
         let mut sources = physics.parts(&step, &state.meshes, &drag_losses);
         sources.extend(through_variators(point, &speeds, &loads, &state, &variators));
         let comparable = old.as_ref().filter(|old| old.len() == sources.len());
         for (k, (own, trend)) in found.iter_mut().zip(&mut trends).enumerate().filter(|(_, (own, _))| own.is_none()) {
-            let slope = |s: &Lost<Moving<N>>| lane(&s.3, k).eps;
+            let slope = |s: &Lost<Moving>| lane(&s.3, k).eps;
             let size = sources.iter().fold(lane(&total.loss, k).eps.abs(), |a, s| a.max(slope(s).abs()));
             let change = comparable.map_or(f64::INFINITY, |old| {
                 old.iter().zip(&sources).fold(0.0f64, |a, (x, y)| a.max((slope(x) - slope(y)).abs()))
@@ -222,15 +217,10 @@ impl Trend {
 }
 
 /// Speeds of all members: linear in what is prescribed.
-fn speeds<const N: usize>(
-    train: &Train,
-    operation: &Operation,
-    point: &Point<'_>,
-    asked: &[Asked<'_>],
-) -> Vec<Moving<N>> {
+fn speeds(train: &Train, operation: &Operation, point: &Point<'_>, asked: &[Asked<'_>]) -> Vec<Moving> {
     // A bus turns as it does: a power is a torque on it, whatever its speed.
     let values = (0..point.c.node_of.len()).map(|m| point.motion.si(MemberId(m)).unwrap_or(0.0));
-    let mut speeds: Vec<Moving<N>> = values.map(Moving::from).collect();
+    let mut speeds: Vec<Moving> = values.map(Moving::from).collect();
     let prescribed = |own: &Asked<'_>| match own.moved {
         Moved::Speed(place) => Some(place),
         _ => None,
@@ -247,13 +237,13 @@ fn speeds<const N: usize>(
 }
 
 /// Prescribed torques, stores and machines.
-fn loads<const N: usize>(
+fn loads(
     operation: &Operation,
     point: &Point<'_>,
-    speeds: &[Moving<N>],
-    numbers: &Numbers<Moving<N>>,
+    speeds: &[Moving],
+    numbers: &Numbers<Moving>,
     asked: &[Asked<'_>],
-) -> Loads<Moving<N>> {
+) -> Loads<Moving> {
     let (mut all, mut driven) = (Vec::new(), Vec::new());
     let train = point.c.train;
     for (k, v) in numbers.variators.iter().enumerate().filter(|(k, _)| train.variators[*k].has_bus()) {
@@ -297,12 +287,12 @@ fn loads<const N: usize>(
 
 /// Efficiencies of the elements behind the meshes, first end driving and second end driving; those of a map where the
 /// machine runs, by what the elements asked of their ends in the round before.
-fn passing<const N: usize>(
+fn passing(
     point: &Point<'_>,
-    speeds: &[Moving<N>],
-    variators: &[VariatorNumbers<Moving<N>>],
-    asked: &[[Moving<N>; 2]],
-) -> Vec<[Moving<N>; 2]> {
+    speeds: &[Moving],
+    variators: &[VariatorNumbers<Moving>],
+    asked: &[[Moving; 2]],
+) -> Vec<[Moving; 2]> {
     let of = |(k, coupling): (usize, &Coupling)| {
         let own = &variators[coupling.variator].efficiencies;
         let Some(machine) = coupling.machine else { return own[0] };
@@ -321,7 +311,7 @@ fn passing<const N: usize>(
 }
 
 /// The coefficients of the ends of an element behind the meshes, as the speeds make them.
-fn coefficients<const N: usize>(point: &Point<'_>, speeds: &[Moving<N>], k: usize) -> [Moving<N>; 2] {
+fn coefficients(point: &Point<'_>, speeds: &[Moving], k: usize) -> [Moving; 2] {
     let element = &point.c.elements[point.c.gears().len() + k];
     let [p, q] = [speeds[element.p.0], speeds[element.q.0]];
     match point.c.couplings[k].machine {
@@ -334,12 +324,7 @@ fn coefficients<const N: usize>(point: &Point<'_>, speeds: &[Moving<N>], k: usiz
 }
 
 /// What elements behind the meshes ask of their ends.
-fn through<const N: usize>(
-    point: &Point<'_>,
-    speeds: &[Moving<N>],
-    forces: &[Moving<N>],
-    eta: &InForce<'_, Moving<N>>,
-) -> Vec<[Moving<N>; 2]> {
+fn through(point: &Point<'_>, speeds: &[Moving], forces: &[Moving], eta: &InForce<'_, Moving>) -> Vec<[Moving; 2]> {
     let gears = point.c.gears().len();
     let of = |k: usize| {
         let rho = passed(point.known().p_drives(gears + k), eta.passing[k]);
@@ -349,7 +334,7 @@ fn through<const N: usize>(
     (0..point.c.couplings.len()).map(of).collect()
 }
 
-fn passed<const N: usize>(p_drives: Option<bool>, [first, second]: [Moving<N>; 2]) -> Moving<N> {
+fn passed(p_drives: Option<bool>, [first, second]: [Moving; 2]) -> Moving {
     match p_drives {
         None => Moving::from(1.0),
         Some(true) => first,
@@ -358,13 +343,13 @@ fn passed<const N: usize>(p_drives: Option<bool>, [first, second]: [Moving<N>; 2
 }
 
 /// What variators lose, standby losses included.
-fn through_variators<const N: usize>(
+fn through_variators(
     point: &Point<'_>,
-    speeds: &[Moving<N>],
-    loads: &Loads<Moving<N>>,
-    state: &State<Moving<N>>,
-    numbers: &[VariatorNumbers<Moving<N>>],
-) -> Vec<Lost<Moving<N>>> {
+    speeds: &[Moving],
+    loads: &Loads<Moving>,
+    state: &State<Moving>,
+    numbers: &[VariatorNumbers<Moving>],
+) -> Vec<Lost<Moving>> {
     let gears = point.c.gears().len();
     let of = |(k, v): (usize, &Variator)| {
         let mut loss = numbers[k].standby;
@@ -384,16 +369,16 @@ fn through_variators<const N: usize>(
 }
 
 /// Forces that balance loads and drags with these efficiencies, followed through the meshes.
-fn solve<const N: usize>(
+fn solve(
     point: &Point<'_>,
-    speeds: &[Moving<N>],
-    loads: &Loads<Moving<N>>,
-    drags: Vec<Drag<Moving<N>>>,
-    eta: &InForce<'_, Moving<N>>,
-) -> Option<State<Moving<N>>> {
+    speeds: &[Moving],
+    loads: &Loads<Moving>,
+    drags: Vec<Drag<Moving>>,
+    eta: &InForce<'_, Moving>,
+) -> Option<State<Moving>> {
     let gears = point.c.gears().len();
     let known = point.known();
-    let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, Moving<N>)| {
+    let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, Moving)| {
         let element = &point.c.elements[column.element];
         if let Some(k) = column.element.checked_sub(gears) {
             let [a, b] = coefficients(point, speeds, k);
@@ -412,31 +397,31 @@ fn solve<const N: usize>(
     Some(State { meshes, passing: through(point, speeds, &forces, eta), drags })
 }
 
-fn walk<const N: usize>(
+fn walk(
     point: &Point<'_>,
-    speeds: &[Moving<N>],
-    forces: &[Moving<N>],
-    efficiencies: &[[Moving<N>; 2]],
-) -> Vec<MeshFlow<Moving<N>>> {
+    speeds: &[Moving],
+    forces: &[Moving],
+    efficiencies: &[[Moving; 2]],
+) -> Vec<MeshFlow<Moving>> {
     // Idle elements have no driver.
-    let acts = |e: usize| forces[e].re != 0.0 || (0..N).any(|k| lane(&forces[e], k).eps != 0.0);
+    let acts = |e: usize| forces[e].re != 0.0 || (0..LANES).any(|k| lane(&forces[e], k).eps != 0.0);
     point.known().meshes(forces, speeds, efficiencies, |e| point.known().p_drives(e).filter(|_| acts(e)))
 }
 
 /// Torque times speed of the second member relative to the first.
-fn drag_loss<const N: usize>(d: &Drag<Moving<N>>, speeds: &[Moving<N>]) -> Moving<N> {
+fn drag_loss(d: &Drag<Moving>, speeds: &[Moving]) -> Moving {
     d.torque * (speeds[d.members[1].0] - speeds[d.members[0].0])
 }
 
 /// What enters and leaves, and all losses.
-struct Totals<const N: usize> {
+struct Totals {
     /// Powers of what acts from outside, by member.
-    powers: Vec<Moving<N>>,
-    loss: Moving<N>,
+    powers: Vec<Moving>,
+    loss: Moving,
 }
 
-impl<const N: usize> Totals<N> {
-    fn of(point: &Point<'_>, speeds: &[Moving<N>], loads: &Loads<Moving<N>>, state: &State<Moving<N>>) -> Self {
+impl Totals {
+    fn of(point: &Point<'_>, speeds: &[Moving], loads: &Loads<Moving>, state: &State<Moving>) -> Self {
         let train = point.c.train;
         let zero = Moving::from(0.0);
         // What the meshes ask of each member, less what drags exert on it.
@@ -479,7 +464,7 @@ impl<const N: usize> Totals<N> {
     }
 
     /// With the derivatives of one lane.
-    fn lane(&self, k: usize, sources: &[Lost<Moving<N>>], rounds: usize, error: f64) -> Powers {
+    fn lane(&self, k: usize, sources: &[Lost<Moving>], rounds: usize, error: f64) -> Powers {
         let largest = self.powers.iter().fold(0.0f64, |a, p| a.max(p.re.abs()));
         // What stands still takes or gives power as soon as it moves: on the side of a rising quantity.
         let side = |p: &Dual64| if p.re.abs() > 1e-12 * largest { p.re } else { p.eps };

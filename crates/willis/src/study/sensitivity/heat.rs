@@ -13,7 +13,7 @@ use crate::train::heat::Heat;
 use crate::train::{HeatNumber, Operation, Slot, Train};
 
 use super::balance::{Powers, powers};
-use super::lanes::{Asked, LANES, Moved};
+use super::lanes::{Asked, Moved};
 
 /// How an operating point follows its oil temperature.
 pub(super) struct Following<'t> {
@@ -31,7 +31,7 @@ impl<'t> Following<'t> {
     pub fn new(train: &'t Train, operation: &Operation, point: &Point<'_>, report: &HeatReport) -> Option<Self> {
         let heat = train.heat().filter(|_| report.basis == HeatBasis::Balance)?;
         let asked = Asked { slots: &[(Slot::Temperature, 1.0)], moved: Moved::Train };
-        let by_temperature = powers::<LANES>(train, operation, point, &[asked]).pop()??;
+        let by_temperature = powers(train, operation, point, &[asked]).pop()??;
         let made: Vec<f64> = heat_made(train, heat, &by_temperature).iter().map(|p| p.re).collect();
         let at = heat.at(report.oil_k, &made).ok()?;
         let mut following = Self { train, heat, at, by_temperature, slope: 0.0 };

@@ -1,9 +1,6 @@
 //! Several derivatives in one pass: what does not depend on the quantity that moves, values, powers, roots, is worked out once for
 //! all of them.
 
-use nalgebra::SVector;
-use num_dual::{Dual64, DualSVec64};
-
 use crate::train::Slot;
 
 /// What moves beside the numbers of the train.
@@ -24,24 +21,50 @@ pub(super) struct Asked<'a> {
     pub moved: Moved,
 }
 
-/// As many quantities are moved side by side. What a browser loads has a limit, and no vectors of eight.
-pub(super) const LANES: usize = if cfg!(target_arch = "wasm32") { 1 } else { 8 };
+pub(super) use several::{LANES, Moving, lane, moving};
 
-/// A number with its derivative by each of `N` quantities.
-pub(super) type Moving<const N: usize> = DualSVec64<N>;
+#[cfg(not(target_arch = "wasm32"))]
+mod several {
+    use nalgebra::SVector;
+    use num_dual::{Dual64, DualSVec64};
 
-/// A number that moves at the given rate in each lane.
-pub(super) fn moving<const N: usize>(value: f64, rate: impl Fn(usize) -> f64) -> Moving<N> {
-    let mut moving = Moving::from_re(value);
-    let rates = SVector::<f64, N>::from_fn(|k, _| rate(k));
-    // Without derivatives it takes no part in theirs.
-    if rates.iter().any(|rate| *rate != 0.0) {
-        moving.eps.0 = Some(rates);
+    /// As many quantities are moved side by side.
+    pub const LANES: usize = 8;
+
+    /// A number with its derivative by each of them.
+    pub type Moving = DualSVec64<LANES>;
+
+    /// A number that moves at the given rate in each lane.
+    pub fn moving(value: f64, rate: impl Fn(usize) -> f64) -> Moving {
+        let mut moving = Moving::from_re(value);
+        let rates = SVector::<f64, LANES>::from_fn(|k, _| rate(k));
+        // Without derivatives it takes no part in theirs.
+        if rates.iter().any(|rate| *rate != 0.0) {
+            moving.eps.0 = Some(rates);
+        }
+        moving
     }
-    moving
+
+    /// The number with its derivative in one lane.
+    pub fn lane(number: &Moving, k: usize) -> Dual64 {
+        Dual64::new(number.re, number.eps.0.map_or(0.0, |rates| rates[k]))
+    }
 }
 
-/// The number with its derivative in one lane.
-pub(super) fn lane<const N: usize>(number: &Moving<N>, k: usize) -> Dual64 {
-    Dual64::new(number.re, number.eps.0.map_or(0.0, |rates| rates[k]))
+/// What a browser loads has a limit, and few vectors: one after the other.
+#[cfg(target_arch = "wasm32")]
+mod several {
+    use num_dual::Dual64;
+
+    pub const LANES: usize = 1;
+
+    pub type Moving = Dual64;
+
+    pub fn moving(value: f64, rate: impl Fn(usize) -> f64) -> Moving {
+        Moving::new(value, rate(0))
+    }
+
+    pub fn lane(number: &Moving, _: usize) -> Dual64 {
+        *number
+    }
 }

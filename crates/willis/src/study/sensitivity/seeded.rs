@@ -11,13 +11,9 @@ use crate::train::{
 
 use super::lanes::{Asked, Moving, moving};
 
-/// The numbers of a train in which the slots of each of up to `N` quantities move together, each at its rate; `None` where the
+/// The numbers of a train in which the slots of each of up to [`LANES`] quantities move together, each at its rate; `None` where the
 /// geometry stands on an edge of what is possible.
-pub(super) fn numbers<const N: usize>(
-    train: &Train,
-    temperature: Option<f64>,
-    asked: &[Asked<'_>],
-) -> Option<Numbers<Moving<N>>> {
+pub(super) fn numbers(train: &Train, temperature: Option<f64>, asked: &[Asked<'_>]) -> Option<Numbers<Moving>> {
     let plain = Numbers::of(train, temperature);
     let seeded = |slot: Slot, value: f64| {
         moving(value, |k| {
@@ -26,7 +22,7 @@ pub(super) fn numbers<const N: usize>(
         })
     };
 
-    let mut teeth: Vec<Option<Teeth<Moving<N>>>> = Vec::with_capacity(train.meshes.len());
+    let mut teeth: Vec<Option<Teeth<Moving>>> = Vec::with_capacity(train.meshes.len());
     for (j, mesh) in train.meshes.iter().enumerate() {
         let Some(t) = &mesh.teeth else {
             teeth.push(None);
@@ -76,7 +72,7 @@ pub(super) fn numbers<const N: usize>(
             }),
         }));
     }
-    let bearings: Vec<MountNumbers<Moving<N>>> = train
+    let bearings: Vec<MountNumbers<Moving>> = train
         .bearings
         .iter()
         .zip(&plain.bearings)
@@ -84,7 +80,7 @@ pub(super) fn numbers<const N: usize>(
         .map(|(k, (mount, own))| {
             use BearingNumber as B;
             let of = |number: B, value: f64| seeded(Slot::Bearing(k, number), value);
-            let mut data = own.data.lift::<Moving<N>>();
+            let mut data = own.data.lift::<Moving>();
             data.bore = of(B::Bore, own.data.bore);
             data.outside_diameter = of(B::OutsideDiameter, own.data.outside_diameter);
             data.width = of(B::Width, own.data.width);
@@ -120,7 +116,7 @@ pub(super) fn numbers<const N: usize>(
         planets.push([orbit, mass]);
     }
     let oil = train.lubrication.as_ref().zip(plain.oil).map(|(l, state)| {
-        let mut curves = l.oil.curves::<Moving<N>>();
+        let mut curves = l.oil.curves::<Moving>();
         let of = |wanted: Slot| train.inputs.iter().find(|i| i.slots.contains(&wanted)).map(|i| i.value);
         if let (Some(cold), Some(hot)) = (of(Slot::Viscosity40), of(Slot::Viscosity100)) {
             curves.viscosity = Viscosity::through(seeded(Slot::Viscosity40, cold), seeded(Slot::Viscosity100, hot));
@@ -204,12 +200,8 @@ pub(super) fn numbers<const N: usize>(
 }
 
 /// The data of a pair of teeth with the derivative by the slots.
-fn pair_data<const N: usize>(
-    plain: &PairData,
-    j: usize,
-    seeded: &dyn Fn(Slot, f64) -> Moving<N>,
-) -> PairData<Moving<N>> {
-    let mut data = plain.lift::<Moving<N>>();
+fn pair_data(plain: &PairData, j: usize, seeded: &dyn Fn(Slot, f64) -> Moving) -> PairData<Moving> {
+    let mut data = plain.lift::<Moving>();
     data.module = seeded(Slot::Module(j), plain.module);
     data.pressure_angle = seeded(Slot::PressureAngle(j), plain.pressure_angle);
     data.helix = seeded(Slot::Helix(j), plain.helix);
