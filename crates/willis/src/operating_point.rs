@@ -760,17 +760,17 @@ impl<'t, R: Real> Physics<'t, R> {
 
     /// Every loss of a solved step: what loses it, what kind it is, its law, the power in W; what has one name, kind
     /// and law is one loss.
-    pub fn parts(
-        &self,
+    pub fn parts<'s>(
+        &'s self,
         step: &Step<R>,
         meshes: &[MeshFlow<R>],
         drag_losses: &[R],
-    ) -> Vec<(String, LossKind, &'static str, R)> {
-        let mut all: Vec<(String, LossKind, &'static str, R)> = Vec::new();
+    ) -> Vec<(&'s str, LossKind, &'static str, R)> {
+        let mut all: Vec<(&'s str, LossKind, &'static str, R)> = Vec::new();
         self.each_loss(step, meshes, drag_losses, |name, kind, law, loss| {
             match all.iter_mut().find(|s| s.0 == name && s.1 == kind && s.2 == law) {
                 Some(s) => s.3 += loss,
-                None => all.push((name.to_owned(), kind, law, loss)),
+                None => all.push((name, kind, law, loss)),
             }
         });
         all
@@ -778,12 +778,12 @@ impl<'t, R: Real> Physics<'t, R> {
 
     /// Tells every loss of a solved step, several of one source one after the other: what loses it, what kind it is, its
     /// law, the power in W.
-    pub fn each_loss(
-        &self,
+    pub fn each_loss<'s>(
+        &'s self,
         step: &Step<R>,
         meshes: &[MeshFlow<R>],
         drag_losses: &[R],
-        mut add: impl FnMut(&str, LossKind, &'static str, R),
+        mut add: impl FnMut(&'s str, LossKind, &'static str, R),
     ) {
         let train = &self.train;
         for (m, own) in meshes.iter().zip(&step.meshes) {
@@ -934,15 +934,21 @@ impl Physics<'_> {
     pub fn sources(&self, step: &Step, flow: &Flow) -> Vec<LossSource> {
         let mut parts = self.parts(step, &flow.meshes, &flow.drag_losses);
         for v in &flow.variators {
-            let name = &self.train.variators[v.variator].name;
-            match parts.iter_mut().find(|s| s.0 == *name && s.1 == LossKind::Variator) {
+            let name = self.train.variators[v.variator].name.as_str();
+            match parts.iter_mut().find(|s| s.0 == name && s.1 == LossKind::Variator) {
                 Some(standby) => standby.3 += v.loss,
-                None => parts.push((name.clone(), LossKind::Variator, "given", v.loss)),
+                None => parts.push((name, LossKind::Variator, "given", v.loss)),
             }
         }
         let parts = parts.into_iter();
         let mut all: Vec<LossSource> = parts
-            .map(|(name, kind, law, loss_w)| LossSource { name, kind, law: law.to_owned(), loss_w, share: 0.0 })
+            .map(|(name, kind, law, loss_w)| LossSource {
+                name: name.to_owned(),
+                kind,
+                law: law.to_owned(),
+                loss_w,
+                share: 0.0,
+            })
             .collect();
         let total: f64 = all.iter().map(|s| s.loss_w).sum();
         for s in &mut all {

@@ -238,7 +238,7 @@ pub(crate) fn made(train: &Train, heat: &Heat, solution: &SolutionReport) -> (Ve
 pub(super) fn made_by(train: &Train, heat: &Heat, physics: &Physics<'_>, agreed: &Agreed) -> Vec<f64> {
     let Agreed { step, flow, .. } = agreed;
     let parts = physics.parts(step, &flow.meshes, &flow.drag_losses);
-    placed(train, heat, parts.iter().map(|s| (s.0.as_str(), s.1, s.3))).0
+    placed(train, heat, parts.iter().map(|s| (s.0, s.1, s.3))).0
 }
 
 /// Losses of named sources at the places where they become heat; what no place names is made in the oil. Of tooth friction

@@ -22,14 +22,14 @@ const MOST_ROUNDS: usize = 400;
 const ACCURACY: f64 = 1e-11;
 
 /// What loses, what kind of loss it is, its law, its power.
-type Lost<R> = (String, LossKind, &'static str, R);
+type Lost<N, R> = (N, LossKind, &'static str, R);
 
 /// Powers with their derivative by one quantity, W.
 pub(super) struct Powers {
     pub input: Dual64,
     pub output: Dual64,
     pub loss: Dual64,
-    pub sources: Vec<Lost<Dual64>>,
+    pub sources: Vec<Lost<String, Dual64>>,
     pub rounds: usize,
     /// Bound on the error of the derivatives that is left, over their size.
     pub error: f64,
@@ -54,27 +54,27 @@ impl Powers {
 }
 
 /// A point in dual numbers.
-struct State<R> {
-    meshes: Vec<MeshFlow<R>>,
+struct State {
+    meshes: Vec<MeshFlow<Moving>>,
     /// Of each element behind the meshes: what it asks of its two ends.
-    passing: Vec<[R; 2]>,
-    drags: Vec<Drag<R>>,
+    passing: Vec<[Moving; 2]>,
+    drags: Vec<Drag<Moving>>,
 }
 
 /// A machine whose torque is prescribed: torque on its member, power out of the bus.
-struct Driven<R> {
+struct Driven {
     at: [usize; 2],
-    torque: R,
-    draws: R,
+    torque: Moving,
+    draws: Moving,
 }
 
 /// What acts on a train from outside, and machines.
-struct Loads<R> {
-    external: Vec<(MemberId, R)>,
-    driven: Vec<Driven<R>>,
+struct Loads {
+    external: Vec<(MemberId, Moving)>,
+    driven: Vec<Driven>,
 }
 
-impl Loads<Moving> {
+impl Loads {
     /// Torques on members and buses.
     fn torques(&self, point: &Point<'_>, speeds: &[Moving]) -> Vec<(MemberId, Moving)> {
         let mut all = self.external.clone();
@@ -88,10 +88,10 @@ impl Loads<Moving> {
 }
 
 /// What is lost on the way.
-struct InForce<'a, R> {
-    meshes: &'a [[R; 2]],
+struct InForce<'a> {
+    meshes: &'a [[Moving; 2]],
     /// By element behind the meshes: its first end driving, its second end driving.
-    passing: Vec<[R; 2]>,
+    passing: Vec<[Moving; 2]>,
 }
 
 /// Powers at a point with the derivative by each of up to [`LANES`] quantities; `None` where the equations have no solution. What is found
@@ -141,7 +141,7 @@ fn settle(
         let sources = state
             .meshes
             .iter()
-            .map(|m| (train.meshes[m.mesh.index()].name.clone(), LossKind::Sliding, "given", m.loss));
+            .map(|m| (train.meshes[m.mesh.index()].name.as_str(), LossKind::Sliding, "given", m.loss));
         let sources: Vec<_> = sources.chain(through_variators(point, &speeds, &loads, &state, &variators)).collect();
         for (k, own) in found.iter_mut().enumerate() {
             *own = Some(total.lane(k, &sources, 1, 0.0));
@@ -157,7 +157,7 @@ fn settle(
     let eta = InForce { meshes: &in_force, passing: passing(point, &speeds, &variators, &[]) };
     let mut passed = through(point, &speeds, &forces, &eta);
     let mut trends = vec![Trend { last: f64::INFINITY, contraction: 0.0 }; asked.len()];
-    let mut old: Option<Vec<Lost<Moving>>> = None;
+    let mut old: Option<Vec<Lost<&str, Moving>>> = None;
     let idle = physics.without_load(&speeds, &meshes, &known);
     for rounds in 1..=MOST_ROUNDS {
         let step: Step<Moving> = physics.evaluate_with(&speeds, &meshes, &known, &idle);
@@ -177,7 +177,7 @@ fn settle(
         sources.extend(through_variators(point, &speeds, &loads, &state, &variators));
         let comparable = old.as_ref().filter(|old| old.len() == sources.len());
         for (k, (own, trend)) in found.iter_mut().zip(&mut trends).enumerate().filter(|(_, (own, _))| own.is_none()) {
-            let slope = |s: &Lost<Moving>| lane(&s.3, k).eps;
+            let slope = |s: &Lost<&str, Moving>| lane(&s.3, k).eps;
             let size = sources.iter().fold(lane(&total.loss, k).eps.abs(), |a, s| a.max(slope(s).abs()));
             let change = comparable.map_or(f64::INFINITY, |old| {
                 old.iter().zip(&sources).fold(0.0f64, |a, (x, y)| a.max((slope(x) - slope(y)).abs()))
@@ -229,8 +229,8 @@ fn speeds(train: &Train, operation: &Operation, point: &Point<'_>, asked: &[Aske
         let members: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
         for (speed, factors) in speeds.iter_mut().take(train.members.len()).zip(point.c.transfer(&members).speeds) {
             let Some(factors) = factors else { continue };
-            let rate = |k: usize| asked.get(k).and_then(prescribed).map_or(0.0, |place| factors[place].to_f64());
-            *speed = moving(speed.re, rate);
+            let rates = asked.iter().enumerate().filter_map(|(k, own)| Some((k, factors[prescribed(own)?].to_f64())));
+            *speed = moving(speed.re, rates);
         }
     }
     speeds
@@ -243,7 +243,7 @@ fn loads(
     speeds: &[Moving],
     numbers: &Numbers<Moving>,
     asked: &[Asked<'_>],
-) -> Loads<Moving> {
+) -> Loads {
     let (mut all, mut driven) = (Vec::new(), Vec::new());
     let train = point.c.train;
     for (k, v) in numbers.variators.iter().enumerate().filter(|(k, _)| train.variators[*k].has_bus()) {
@@ -272,8 +272,8 @@ fn loads(
         driven.push(Driven { at: *at, torque, draws });
     }
     for (place, (member, load)) in operation.loads.iter().enumerate() {
-        let moves = |k: usize| asked.get(k).is_some_and(|own| own.moved == Moved::Load(place));
-        let own = |value: f64| moving(value, |k| f64::from(u8::from(moves(k))));
+        let lanes = asked.iter().enumerate().filter(|(_, own)| own.moved == Moved::Load(place));
+        let own = |value: f64| moving(value, lanes.clone().map(|(k, _)| (k, 1.0)));
         let torque = match load {
             Load::Torque(q) => own(q.si()),
             // No power at rest: no torque.
@@ -324,7 +324,7 @@ fn coefficients(point: &Point<'_>, speeds: &[Moving], k: usize) -> [Moving; 2] {
 }
 
 /// What elements behind the meshes ask of their ends.
-fn through(point: &Point<'_>, speeds: &[Moving], forces: &[Moving], eta: &InForce<'_, Moving>) -> Vec<[Moving; 2]> {
+fn through(point: &Point<'_>, speeds: &[Moving], forces: &[Moving], eta: &InForce<'_>) -> Vec<[Moving; 2]> {
     let gears = point.c.gears().len();
     let of = |k: usize| {
         let rho = passed(point.known().p_drives(gears + k), eta.passing[k]);
@@ -343,15 +343,15 @@ fn passed(p_drives: Option<bool>, [first, second]: [Moving; 2]) -> Moving {
 }
 
 /// What variators lose, standby losses included.
-fn through_variators(
-    point: &Point<'_>,
+fn through_variators<'t>(
+    point: &Point<'t>,
     speeds: &[Moving],
-    loads: &Loads<Moving>,
-    state: &State<Moving>,
+    loads: &Loads,
+    state: &State,
     numbers: &[VariatorNumbers<Moving>],
-) -> Vec<Lost<Moving>> {
+) -> Vec<Lost<&'t str, Moving>> {
     let gears = point.c.gears().len();
-    let of = |(k, v): (usize, &Variator)| {
+    let of = |(k, v): (usize, &'t Variator)| {
         let mut loss = numbers[k].standby;
         for (j, coupling) in point.c.couplings.iter().enumerate().filter(|(_, c)| c.variator == k) {
             let _ = coupling;
@@ -363,7 +363,7 @@ fn through_variators(
             let member = v.machines()[d.at[1]].member;
             loss += d.draws - d.torque * speeds[member.0];
         }
-        (v.name.clone(), LossKind::Variator, "given", loss)
+        (v.name.as_str(), LossKind::Variator, "given", loss)
     };
     point.c.train.variators.iter().enumerate().map(of).collect()
 }
@@ -372,10 +372,10 @@ fn through_variators(
 fn solve(
     point: &Point<'_>,
     speeds: &[Moving],
-    loads: &Loads<Moving>,
+    loads: &Loads,
     drags: Vec<Drag<Moving>>,
-    eta: &InForce<'_, Moving>,
-) -> Option<State<Moving>> {
+    eta: &InForce<'_>,
+) -> Option<State> {
     let gears = point.c.gears().len();
     let known = point.known();
     let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, Moving)| {
@@ -421,7 +421,7 @@ struct Totals {
 }
 
 impl Totals {
-    fn of(point: &Point<'_>, speeds: &[Moving], loads: &Loads<Moving>, state: &State<Moving>) -> Self {
+    fn of(point: &Point<'_>, speeds: &[Moving], loads: &Loads, state: &State) -> Self {
         let train = point.c.train;
         let zero = Moving::from(0.0);
         // What the meshes ask of each member, less what drags exert on it.
@@ -464,7 +464,7 @@ impl Totals {
     }
 
     /// With the derivatives of one lane.
-    fn lane(&self, k: usize, sources: &[Lost<Moving>], rounds: usize, error: f64) -> Powers {
+    fn lane(&self, k: usize, sources: &[Lost<&str, Moving>], rounds: usize, error: f64) -> Powers {
         let largest = self.powers.iter().fold(0.0f64, |a, p| a.max(p.re.abs()));
         // What stands still takes or gives power as soon as it moves: on the side of a rising quantity.
         let side = |p: &Dual64| if p.re.abs() > 1e-12 * largest { p.re } else { p.eps };
@@ -473,7 +473,7 @@ impl Totals {
             wanted.fold(Dual64::from(0.0), |sum, p| sum + p * sign)
         };
         let sources =
-            sources.iter().map(|(name, kind, law, loss)| (name.clone(), *kind, *law, lane(loss, k))).collect();
+            sources.iter().map(|(name, kind, law, loss)| ((*name).to_owned(), *kind, *law, lane(loss, k))).collect();
         Powers { input: sum(1.0), output: sum(-1.0), loss: lane(&self.loss, k), sources, rounds, error }
     }
 }

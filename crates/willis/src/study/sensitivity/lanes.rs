@@ -25,7 +25,6 @@ pub(super) use several::{LANES, Moving, lane, moving};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod several {
-    use nalgebra::SVector;
     use num_dual::{Dual64, DualSVec64};
 
     /// As many quantities are moved side by side.
@@ -34,13 +33,11 @@ mod several {
     /// A number with its derivative by each of them.
     pub type Moving = DualSVec64<LANES>;
 
-    /// A number that moves at the given rate in each lane.
-    pub fn moving(value: f64, rate: impl Fn(usize) -> f64) -> Moving {
+    /// A number that moves at the given rates in the given lanes. One that does not move takes no part in derivatives.
+    pub fn moving(value: f64, rates: impl Iterator<Item = (usize, f64)>) -> Moving {
         let mut moving = Moving::from_re(value);
-        let rates = SVector::<f64, LANES>::from_fn(|k, _| rate(k));
-        // Without derivatives it takes no part in theirs.
-        if rates.iter().any(|rate| *rate != 0.0) {
-            moving.eps.0 = Some(rates);
+        for (lane, rate) in rates.filter(|(_, rate)| *rate != 0.0) {
+            moving.eps.0.get_or_insert_default()[lane] = rate;
         }
         moving
     }
@@ -60,8 +57,8 @@ mod several {
 
     pub type Moving = Dual64;
 
-    pub fn moving(value: f64, rate: impl Fn(usize) -> f64) -> Moving {
-        Moving::new(value, rate(0))
+    pub fn moving(value: f64, mut rates: impl Iterator<Item = (usize, f64)>) -> Moving {
+        Moving::new(value, rates.next().map_or(0.0, |(_, rate)| rate))
     }
 
     pub fn lane(number: &Moving, _: usize) -> Dual64 {

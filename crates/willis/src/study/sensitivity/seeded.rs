@@ -16,10 +16,8 @@ use super::lanes::{Asked, Moving, moving};
 pub(super) fn numbers(train: &Train, temperature: Option<f64>, asked: &[Asked<'_>]) -> Option<Numbers<Moving>> {
     let plain = Numbers::of(train, temperature);
     let seeded = |slot: Slot, value: f64| {
-        moving(value, |k| {
-            let slots = asked.get(k).map_or(&[][..], |own| own.slots);
-            slots.iter().find(|(own, _)| *own == slot).map_or(0.0, |(_, rate)| *rate)
-        })
+        let rate = |own: &Asked<'_>| own.slots.iter().find(|(own, _)| *own == slot).map(|(_, rate)| *rate);
+        moving(value, asked.iter().enumerate().filter_map(|(lane, own)| Some((lane, rate(own)?))))
     };
 
     let mut teeth: Vec<Option<Teeth<Moving>>> = Vec::with_capacity(train.meshes.len());
