@@ -310,9 +310,10 @@ fn libraries_name_no_option_of_the_command_line() {
     }
 }
 
-/// Closures of a line whose parameters are large numbers by value.
+/// Whether a closure on a line has parameters that are large numbers by value. One that leaves their type to be found is not seen.
 fn takes_numbers_by_value(line: &str) -> bool {
-    let numbers = ["R", "D", "Inner<D>", "Dual<R>", "Plane<R>", "Moving<N>", "T"];
+    let numbers = ["R", "D", "Inner<D>", "Dual<R>", "Plane<R>", "Moving", "T"];
+    // Parameters stand between an odd bar and the next: what is before the first is none.
     line.split('|')
         .skip(1)
         .step_by(2)
