@@ -8,7 +8,9 @@
 //! and sums; there, square factors are found and the rest is left as it is.
 
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
 use smallvec::SmallVec;
 
@@ -22,7 +24,7 @@ pub struct Symbol(pub usize);
 
 /// The symbols that occur, in order, with their exponents, which are not zero. Of many symbols few occur in one term.
 /// Ordered as people write: by degree, then by symbol.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 struct Monomial(SmallVec<[(Symbol, u32); 3]>);
 
 impl Monomial {
@@ -99,8 +101,47 @@ impl PartialOrd for Monomial {
 /// let p = &(&one - &x) * &(&one + &y);
 /// assert_eq!(p.to_function().factors().len(), 2);
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Polynomial(BTreeMap<Monomial, Rational>);
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Polynomial(Arc<Terms>);
+
+/// Monomials with their coefficients, which are not zero, in order.
+type Terms = Vec<(Monomial, Rational)>;
+
+impl Ord for Polynomial {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // Formulas share their factors.
+        if Arc::ptr_eq(&self.0, &other.0) { Ordering::Equal } else { self.0.cmp(&other.0) }
+    }
+}
+
+impl PartialOrd for Polynomial {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Hash for Polynomial {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        // Of equal ones the monomials are equal, and few differ in their coefficients alone.
+        self.monomials().for_each(|m| m.hash(state));
+    }
+}
+
+impl FromIterator<(Monomial, Rational)> for Polynomial {
+    fn from_iter<I: IntoIterator<Item = (Monomial, Rational)>>(terms: I) -> Self {
+        let mut all: Terms = terms.into_iter().collect();
+        all.sort_by(|a, b| a.0.cmp(&b.0));
+        all.dedup_by(|next, kept| {
+            let same = next.0 == kept.0;
+            if same {
+                kept.1 = &kept.1 + &next.1;
+            }
+            same
+        });
+        all.retain(|(_, c)| !c.is_zero());
+        Self(Arc::new(all))
+    }
+}
 
 impl From<i64> for Polynomial {
     fn from(value: i64) -> Self {
@@ -111,26 +152,35 @@ impl From<i64> for Polynomial {
 impl Polynomial {
     /// A number.
     pub fn constant(value: Rational) -> Self {
-        let mut p = Self(BTreeMap::new());
-        p.add_term(Monomial::default(), value);
-        p
+        Self::from_iter([(Monomial::default(), value)])
     }
 
     /// One symbol.
     pub fn symbol(s: Symbol) -> Self {
-        Self(BTreeMap::from([(Monomial::default().with(s, 1), Rational::ONE)]))
+        Self::from_iter([(Monomial::default().with(s, 1), Rational::ONE)])
+    }
+
+    fn monomials(&self) -> impl Iterator<Item = &Monomial> {
+        self.0.iter().map(|own| &own.0)
+    }
+
+    fn numbers(&self) -> impl Iterator<Item = &Rational> {
+        self.0.iter().map(|own| &own.1)
     }
 
     fn add_term(&mut self, m: Monomial, c: Rational) {
         if c.is_zero() {
             return;
         }
-        let sum = match self.0.remove(&m) {
-            Some(old) => old + c,
-            None => c,
-        };
-        if !sum.is_zero() {
-            self.0.insert(m, sum);
+        let terms = Arc::make_mut(&mut self.0);
+        match terms.binary_search_by(|own| own.0.cmp(&m)) {
+            Err(at) => terms.insert(at, (m, c)),
+            Ok(at) => {
+                terms[at].1 = &terms[at].1 + &c;
+                if terms[at].1.is_zero() {
+                    terms.remove(at);
+                }
+            }
         }
     }
 
@@ -141,7 +191,7 @@ impl Polynomial {
 
     /// Its value, when no symbol occurs in it.
     pub fn as_constant(&self) -> Option<Rational> {
-        match self.0.iter().next() {
+        match self.0.first() {
             None => Some(Rational::ZERO),
             Some((m, c)) => (self.0.len() == 1 && m.0.is_empty()).then(|| c.clone()),
         }
@@ -164,7 +214,7 @@ impl Polynomial {
 
     /// Symbols that occur.
     pub fn symbols(&self) -> Vec<Symbol> {
-        let mut all: Vec<Symbol> = self.0.keys().flat_map(|m| m.0.iter().map(|own| own.0)).collect();
+        let mut all: Vec<Symbol> = self.monomials().flat_map(|m| m.0.iter().map(|own| own.0)).collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -172,51 +222,40 @@ impl Polynomial {
 
     /// Whether no power of a symbol is above the first.
     fn is_multilinear(&self) -> bool {
-        self.0.keys().all(|m| m.0.iter().all(|own| own.1 <= 1))
+        self.monomials().all(|m| m.0.iter().all(|own| own.1 <= 1))
     }
 
     /// Highest power of a symbol.
     pub fn degree(&self, s: Symbol) -> u32 {
-        self.0.keys().map(|m| m.of(s)).max().unwrap_or(0)
+        self.monomials().map(|m| m.of(s)).max().unwrap_or(0)
     }
 
     /// Coefficients of the powers of `s`, from the zeroth.
     fn coefficients(&self, s: Symbol) -> Vec<Self> {
-        let mut all = vec![Self(BTreeMap::new()); self.degree(s) as usize + 1];
-        for (m, c) in &self.0 {
-            all[m.of(s) as usize].0.insert(m.with(s, 0), c.clone());
+        let mut all = vec![Terms::new(); self.degree(s) as usize + 1];
+        for (m, c) in self.0.iter() {
+            all[m.of(s) as usize].push((m.with(s, 0), c.clone()));
         }
-        all
+        all.into_iter().map(Self::from_iter).collect()
     }
 
     fn from_coefficients(all: &[Self], s: Symbol) -> Self {
-        let mut p = Self(BTreeMap::new());
-        for (k, part) in all.iter().enumerate() {
-            for (m, c) in &part.0 {
-                p.0.insert(m.with(s, k as u32), c.clone());
-            }
-        }
-        p
+        let raised = |k| move |(m, c): &(Monomial, Rational)| (m.with(s, k as u32), c.clone());
+        all.iter().enumerate().flat_map(|(k, part)| part.0.iter().map(raised(k))).collect()
     }
 
     /// The product with a number.
     pub fn scaled(&self, factor: &Rational) -> Self {
         if factor.is_zero() {
-            return Self(BTreeMap::new());
+            return Self::default();
         }
-        Self(self.0.iter().map(|(m, c)| (m.clone(), c * factor)).collect())
+        self.0.iter().map(|(m, c)| (m.clone(), c * factor)).collect()
     }
 
     /// The derivative with respect to a symbol.
     pub fn derivative(&self, s: Symbol) -> Self {
-        let mut p = Self(BTreeMap::new());
-        for (m, c) in &self.0 {
-            let e = m.of(s);
-            if e > 0 {
-                p.add_term(m.with(s, e - 1), c * &Rational::from(i64::from(e)));
-            }
-        }
-        p
+        let lowered = |(m, c): &(Monomial, Rational)| (m.with(s, m.of(s) - 1), c * &Rational::from(i64::from(m.of(s))));
+        self.0.iter().filter(|(m, _)| m.of(s) > 0).map(lowered).collect()
     }
 
     /// The value for given values of the symbols.
@@ -234,8 +273,8 @@ impl Polynomial {
     /// The leading number that is split off so that coefficients are whole, without a common
     /// divisor, and the first term is positive.
     fn numeric_content(&self) -> Rational {
-        let Some(first) = self.0.values().next() else { return Rational::ONE };
-        let content = self.0.values().fold(None, |g: Option<Rational>, c| {
+        let Some(first) = self.numbers().next() else { return Rational::ONE };
+        let content = self.numbers().fold(None, |g: Option<Rational>, c| {
             Some(match g {
                 None => c.abs(),
                 Some(g) => common_divisor(&g, &c.abs()),
@@ -252,12 +291,12 @@ impl Polynomial {
 
     /// The quotient, when the division leaves no remainder.
     fn divided(&self, by: &Self) -> Option<Self> {
-        let (lead, lead_c) = by.0.iter().next_back()?;
+        let (lead, lead_c) = by.0.last()?;
         let mut rest = self.clone();
-        let mut quotient = Self(BTreeMap::new());
-        while let Some((m, c)) = rest.0.iter().next_back() {
+        let mut quotient = Self::default();
+        while let Some((m, c)) = rest.0.last() {
             let (m, c) = (m.over(lead)?, c / lead_c);
-            for (bm, bc) in &by.0 {
+            for (bm, bc) in by.0.iter() {
                 rest.add_term(m.times(bm), -(&c * bc));
             }
             quotient.add_term(m, c);
@@ -267,7 +306,7 @@ impl Polynomial {
 
     /// The content with respect to a symbol: the greatest common divisor of its coefficients.
     fn content(&self, s: Symbol) -> Self {
-        let mut g = Self(BTreeMap::new());
+        let mut g = Self::default();
         for c in self.coefficients(s) {
             g = g.gcd(&c);
             if g.as_constant().is_some_and(|c| !c.is_zero()) {
@@ -329,7 +368,7 @@ impl Polynomial {
         while !rest.is_zero() && rest.degree(s) as usize >= b.len() - 1 {
             let a = rest.coefficients(s);
             let (top, shift) = (a.last().expect("not zero").clone(), a.len() - b.len());
-            let mut shifted = vec![Self(BTreeMap::new()); shift];
+            let mut shifted = vec![Self::default(); shift];
             shifted.extend(b.iter().map(|c| c * &top));
             rest = &(&rest * lead) - &Self::from_coefficients(&shifted, s);
         }
@@ -365,27 +404,25 @@ impl Polynomial {
                 *low = (*low).min(*e);
             }
         }
-        let mut p = Self(BTreeMap::new());
-        for (c, exponents) in terms {
+        let raised = |(c, exponents): (Rational, BTreeMap<Symbol, i32>)| {
             let mut m = Monomial::default();
             for s in exponents.keys().chain(lowest.keys()) {
                 let e = exponents.get(s).copied().unwrap_or(0) - lowest.get(s).copied().unwrap_or(0);
                 m = m.with(*s, e as u32);
             }
-            p.add_term(m, c);
-        }
+            (m, c)
+        };
+        let p: Self = terms.into_iter().map(raised).collect();
         let below = lowest.into_iter().map(|(s, e)| (Self::symbol(s), e));
         Some(p.to_function().times(&RationalFunction::collect(Rational::ONE, below)))
     }
 
     /// This with functions in the place of symbols, of which `None` leaves one as it is; `None` where all are left.
     pub(crate) fn substituted(&self, value: &dyn Fn(Symbol) -> Option<RationalFunction>) -> Option<RationalFunction> {
-        let values: Vec<_> = self.symbols().into_iter().map(|s| (s, value(s))).collect();
-        if values.iter().all(|(_, value)| value.is_none()) {
-            return None;
-        }
-        let values: BTreeMap<Symbol, RationalFunction> =
-            values.into_iter().map(|(s, value)| (s, value.unwrap_or_else(|| RationalFunction::symbol(s)))).collect();
+        // Most factors have none of the symbols.
+        self.monomials().flat_map(|m| &m.0).find(|own| value(own.0).is_some())?;
+        let of = |s| (s, value(s).unwrap_or_else(|| RationalFunction::symbol(s)));
+        let values: BTreeMap<Symbol, RationalFunction> = self.symbols().into_iter().map(of).collect();
         Some(self.with_monomials(&values).unwrap_or_else(|| {
             self.terms().fold(RationalFunction::ZERO, |sum, (c, powers)| {
                 let mut term = RationalFunction::from(c.clone());
@@ -415,12 +452,12 @@ fn split(p: Polynomial, factors: &mut Vec<Polynomial>) {
         return;
     }
     for s in p.symbols() {
-        let lowest = p.0.keys().map(|m| m.of(s)).min().unwrap_or(0);
+        let lowest = p.monomials().map(|m| m.of(s)).min().unwrap_or(0);
         if lowest > 0 {
             let (x, one) = (Polynomial::symbol(s), p.0.iter());
             factors.extend((0..lowest).map(|_| x.clone()));
             let rest = one.map(|(m, c)| (m.with(s, m.of(s) - lowest), c.clone())).collect();
-            return split(Polynomial(rest), factors);
+            return split(rest, factors);
         }
     }
     if let Some(all) = multilinear_factors(&p) {
@@ -465,7 +502,7 @@ fn multilinear_factors(p: &Polynomial) -> Option<Vec<Polynomial>> {
     // Values of p, its first and its mixed second derivatives.
     let (mut value, mut first, mut second) = (0u64, vec![0u64; n], vec![0u64; n * n]);
     let inverse: Vec<u64> = symbols.iter().map(|s| inverse(probe(*s))).collect();
-    for (m, c) in &p.0 {
+    for (m, c) in p.0.iter() {
         let mut term = residue(c);
         let present: Vec<usize> = (0..n).filter(|&k| m.of(symbols[k]) == 1).collect();
         for &k in &present {
@@ -500,15 +537,15 @@ fn multilinear_factors(p: &Polynomial) -> Option<Vec<Polynomial>> {
     let factors: Vec<Polynomial> = parts
         .iter()
         .map(|part| {
-            let mut factor = Polynomial(BTreeMap::new());
-            for (m, c) in &p.0 {
+            let of = |(m, c): &(Monomial, Rational)| {
                 let (mut rest, mut c) = (m.clone(), c.clone());
                 for k in (0..n).filter(|&k| group[k] != *part && m.of(symbols[k]) == 1) {
                     rest = rest.with(symbols[k], 0);
                     c = c * Rational::from(probe(symbols[k]) as i64);
                 }
-                factor.add_term(rest, c);
-            }
+                (rest, c)
+            };
+            let factor: Polynomial = p.0.iter().map(of).collect();
             if factor.is_zero() { factor } else { factor.primitive() }
         })
         .collect();
@@ -525,7 +562,7 @@ fn residue(c: &Rational) -> u64 {
 /// The coefficients of the powers of `s`, all other symbols at the probe point.
 fn image(p: &Polynomial, s: Symbol) -> Vec<u64> {
     let mut all = vec![0u64; p.degree(s) as usize + 1];
-    for (m, c) in &p.0 {
+    for (m, c) in p.0.iter() {
         let mut term = residue(c);
         for (other, e) in m.0.iter().filter(|own| own.0 != s) {
             (0..*e).for_each(|_| term = times(term, probe(*other)));
@@ -585,22 +622,12 @@ macro_rules! polynomial_operator {
         }
     };
 }
-polynomial_operator!(Add, add, |a, b| {
-    let mut sum = a.clone();
-    b.0.iter().for_each(|(m, c)| sum.add_term(m.clone(), c.clone()));
-    sum
-});
+polynomial_operator!(Add, add, |a, b| a.0.iter().chain(b.0.iter()).cloned().collect());
 polynomial_operator!(Sub, sub, |a, b| {
-    let mut sum = a.clone();
-    b.0.iter().for_each(|(m, c)| sum.add_term(m.clone(), -c.clone()));
-    sum
+    a.0.iter().cloned().chain(b.0.iter().map(|(m, c)| (m.clone(), -c.clone()))).collect()
 });
 polynomial_operator!(Mul, mul, |a, b| {
-    let mut product = Polynomial(BTreeMap::new());
-    for (ma, ca) in &a.0 {
-        b.0.iter().for_each(|(mb, cb)| product.add_term(ma.times(mb), ca * cb));
-    }
-    product
+    a.0.iter().flat_map(|(ma, ca)| b.0.iter().map(move |(mb, cb)| (ma.times(mb), ca * cb))).collect()
 });
 
 /// The entries of a column of a matrix that are not zero, with their rows.
@@ -612,12 +639,12 @@ pub(crate) type Entries<'p> = Vec<(usize, &'p Polynomial)>;
 pub(crate) struct Determinants {
     /// Most terms of a minor.
     most: usize,
-    factored: BTreeMap<Polynomial, RationalFunction>,
+    factored: HashMap<Polynomial, RationalFunction>,
 }
 
 impl Determinants {
     pub fn new(most: usize) -> Self {
-        Self { most, factored: BTreeMap::new() }
+        Self { most, factored: HashMap::new() }
     }
 
     /// The determinant of a matrix: in block triangular form it is the product of those of the diagonal blocks. `None` when
@@ -787,18 +814,27 @@ impl RationalFunction {
 
     /// The product.
     pub fn times(&self, other: &Self) -> Self {
-        // The factors of both are sorted.
-        let mut factors = Vec::with_capacity(self.factors.len() + other.factors.len());
+        let factors = self.beside(other).into_iter().map(|(p, [a, b])| (p.clone(), a + b)).collect();
+        Self::reduced(&self.number * &other.number, factors)
+    }
+
+    /// The factors of both, sorted, with their powers in each.
+    fn beside<'f>(&'f self, other: &'f Self) -> Vec<(&'f Polynomial, [i32; 2])> {
+        let mut all = Vec::with_capacity(self.factors.len() + other.factors.len());
         let mut mine = self.factors.iter().peekable();
         for (p, e) in &other.factors {
-            while let Some(own) = mine.next_if(|own| own.0 < *p) {
-                factors.push(own.clone());
+            let mut order = Ordering::Less;
+            while let Some(own) = mine.next_if(|own| {
+                order = own.0.cmp(p);
+                order == Ordering::Less
+            }) {
+                all.push((&own.0, [own.1, 0]));
             }
-            let same = mine.next_if(|own| own.0 == *p).map_or(0, |own| own.1);
-            factors.push((p.clone(), e + same));
+            let same = mine.next_if(|_| order == Ordering::Equal).map_or(0, |own| own.1);
+            all.push((p, [same, *e]));
         }
-        factors.extend(mine.cloned());
-        Self::reduced(&self.number * &other.number, factors)
+        all.extend(mine.map(|(p, e)| (p, [*e, 0])));
+        all
     }
 
     /// The product of many, whose factors are joined once.
@@ -849,11 +885,8 @@ impl RationalFunction {
             return Some(if self.is_zero() { other.clone() } else { self.clone() });
         }
         // What both share stays factored; the rest is multiplied out over a common denominator.
-        let power =
-            |f: &Self, p: &Polynomial| f.factors.binary_search_by(|own| own.0.cmp(p)).map_or(0, |at| f.factors[at].1);
-        let shared = self.factors.iter().chain(&other.factors).map(|(p, _)| (p, power(self, p).min(power(other, p))));
-        let shared: BTreeMap<&Polynomial, i32> = shared.collect();
-        let shared = Self::reduced(Rational::ONE, shared.into_iter().map(|(p, e)| (p.clone(), e)).collect());
+        let least = self.beside(other).into_iter().map(|(p, [a, b])| (p.clone(), a.min(b))).collect();
+        let shared = Self::reduced(Rational::ONE, least);
         let rest = |f: &Self| {
             let left = f.over(&shared);
             let each = || left.factors.iter().flat_map(|(p, e)| (0..*e).map(move |_| p));
@@ -889,11 +922,13 @@ impl RationalFunction {
         // Factors are joined once, at the end.
         let mut number = self.number.clone();
         let mut factors: Vec<(Polynomial, i32)> = Vec::with_capacity(self.factors.len());
+        let mut is_same = true;
         for (p, e) in &self.factors {
             let Some(sum) = value(p) else {
                 factors.push((p.clone(), *e));
                 continue;
             };
+            is_same = false;
             if sum.is_zero() && *e < 0 {
                 return None;
             }
@@ -902,7 +937,7 @@ impl RationalFunction {
             }
             factors.extend(sum.factors.into_iter().map(|(p, own)| (p, own * e)));
         }
-        Some(Self::collect(number, factors))
+        Some(if is_same { Self { number, factors } } else { Self::collect(number, factors) })
     }
 
     /// The value for given values of the symbols; `None` on a pole.
@@ -1043,6 +1078,15 @@ impl Notation {
 
     /// A rational function.
     pub fn function(self, f: &RationalFunction, name: &dyn Fn(Symbol) -> String) -> String {
+        self.function_of(f, &mut |p, flipped| self.polynomial(p, name, flipped))
+    }
+
+    /// A rational function whose factors, or their negatives, are written as told.
+    pub(crate) fn function_of(
+        self,
+        f: &RationalFunction,
+        factor: &mut dyn FnMut(&Polynomial, bool) -> String,
+    ) -> String {
         if f.is_zero() {
             return self.whole("0");
         }
@@ -1061,7 +1105,7 @@ impl Notation {
             false => None,
         };
         negative &= turned.is_none();
-        let side = |sign: i32, number: &str| -> (String, usize) {
+        let mut side = |sign: i32, number: &str| -> (String, usize) {
             let chosen: Vec<(usize, &(Polynomial, i32))> =
                 f.factors.iter().enumerate().filter(|(_, (_, e))| e.signum() == sign).collect();
             let mut parts: Vec<String> = Vec::new();
@@ -1070,7 +1114,7 @@ impl Notation {
             }
             let alone = chosen.len() + parts.len() == 1;
             for (k, (p, e)) in chosen {
-                let text = self.polynomial(p, name, turned == Some(k));
+                let text = factor(p, turned == Some(k));
                 let simple = p.len() == 1 || (alone && e.abs() == 1);
                 let base = if simple { text } else { self.parentheses(&text) };
                 parts.push(self.power(&base, e.unsigned_abs()));

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::analysis::{NameMap, Role};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::symbolic::{Notation, RationalFunction, Symbol};
+use crate::symbolic::{Notation, Symbol};
 use crate::train::{FRAME, MemberId};
 
 use super::arrangement::{self, dot};
@@ -720,12 +720,12 @@ fn formula_report(
 ) -> FormulaReport {
     let setup = shape.setup;
     let of = |sign: i8| names(setup, (0..powers.len()).filter(|&t| powers[t] == sign));
-    let show = |f: &RationalFunction| own.names.show(Notation::Text, f);
+    let mut show = own.names.writer(Notation::Text);
     let driving: Vec<String> = drivers(setup, pattern)
         .into_iter()
         .filter_map(|(e, d)| d.map(|d| if setup.active.len() > 1 { format!("{d} in {e}") } else { d }))
         .collect();
-    let loss: Vec<String> = own.losses.iter().map(show).collect();
+    let loss: Vec<String> = own.losses.iter().map(&mut show).collect();
     FormulaReport {
         id,
         roles: arrow(&of(1), &of(-1)),

@@ -7,7 +7,7 @@
 //! moves. For one degree of freedom this is the rule `η = i(x)/i` of virtual work.
 
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::rc::Rc;
 
 use crate::exact::Rational;
@@ -171,7 +171,18 @@ impl Names {
     }
 
     pub fn show(&self, notation: Notation, f: &RationalFunction) -> String {
-        notation.function(f, &|s| self.written(notation, s))
+        self.writer(notation)(f)
+    }
+
+    /// What writes many functions, whose factors are mostly the same.
+    pub fn writer(&self, notation: Notation) -> impl FnMut(&RationalFunction) -> String {
+        let mut known: HashMap<(Polynomial, bool), String> = HashMap::new();
+        move |f| {
+            notation.function_of(f, &mut |p, flipped| {
+                let write = || notation.polynomial(p, &|s| self.written(notation, s), flipped);
+                known.entry((p.clone(), flipped)).or_insert_with(write).clone()
+            })
+        }
     }
 
     fn new(setup: &Setup<'_>) -> Self {
@@ -727,7 +738,7 @@ impl<'s, 't> Shape<'s, 't> {
         let known = self.driven.borrow().get(pattern).cloned();
         known.unwrap_or_else(|| {
             // Many functions are made of the same few factors.
-            let mut known: BTreeMap<Polynomial, Option<RationalFunction>> = BTreeMap::new();
+            let mut known: HashMap<Polynomial, Option<RationalFunction>> = HashMap::new();
             let mut factor = |p: &Polynomial| match known.get(p) {
                 Some(own) => own.clone(),
                 None => {

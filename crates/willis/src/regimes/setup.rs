@@ -297,7 +297,7 @@ impl<'t> Setup<'t> {
     }
 
     /// A value for each terminal, by its name.
-    pub fn by_terminal<T>(&self, value: impl Fn(usize) -> T) -> NameMap<T> {
+    pub fn by_terminal<T>(&self, mut value: impl FnMut(usize) -> T) -> NameMap<T> {
         (0..self.terminals.len()).map(|t| (self.terminal_name(t).to_owned(), value(t))).collect()
     }
 
