@@ -13,7 +13,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use willis::contract::Contract;
-use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::model::Model;
 use willis::work::Work;
 
@@ -381,8 +381,12 @@ pub trait Answer {
     /// See [`Question::tables`].
     fn tables(&self) -> Vec<Table>;
 
-    /// See [`Question::notes`].
-    fn notes(&self) -> &[Diagnostic];
+    /// Those of [`Question::notes`], and what else is [unsaid](Self::unsaid).
+    fn notes(&self) -> Vec<Diagnostic>;
+
+    /// Warnings about the trains themselves that are not among the notes: what is asked of a train that cannot be assembled is
+    /// told so, whatever the question. Those of the second train and the others have no place.
+    fn unsaid(&self) -> Vec<Diagnostic>;
 
     /// See [`Question::is_partial`].
     fn is_partial(&self) -> bool;
@@ -423,8 +427,33 @@ impl<Q: Question, B: Borrow<Q>, T: AsRef<[Given]>> Answer for Answered<(B, Phant
         self.question.0.borrow().tables(&self.answer)
     }
 
-    fn notes(&self) -> &[Diagnostic] {
-        Q::notes(&self.answer)
+    fn notes(&self) -> Vec<Diagnostic> {
+        [Q::notes(&self.answer), &self.unsaid()].concat()
+    }
+
+    fn unsaid(&self) -> Vec<Diagnostic> {
+        let of = self.of.as_ref();
+        let said = Q::notes(&self.answer);
+        let is_new = |d: &&Diagnostic| {
+            d.severity == Severity::Warning && !said.iter().any(|s| s.code == d.code && s.message == d.message)
+        };
+        let all = of.iter().enumerate().flat_map(|(k, given)| {
+            let own = given.model.warnings().iter().filter(is_new).cloned();
+            own.map(move |mut d| {
+                if of.len() > 1 {
+                    d.message = format!("{}: {}", given.name, d.message);
+                }
+                if k > 0 {
+                    (d.place, d.span, d.replacement) = Default::default();
+                }
+                d
+            })
+        });
+        let mut all: Vec<Diagnostic> = all.collect();
+        // A train may be given twice.
+        let mut seen = std::collections::HashSet::new();
+        all.retain(|d| seen.insert((d.code, d.message.clone())));
+        all
     }
 
     fn is_partial(&self) -> bool {

@@ -92,9 +92,33 @@ fn part(text: &str) -> Result<f64, String> {
     }
 }
 
+/// What the values of options are called that may be negative, so that what follows is no option whatever it begins with.
+const NUMBERS: [&str; 17] = [
+    "EFFICIENCY",
+    "FACTOR",
+    "K",
+    "LENGTH",
+    "MIN..MAX",
+    "MM",
+    "N",
+    "PART",
+    "POWER",
+    "RANGE",
+    "RATIO",
+    "SPEED",
+    "TEETH",
+    "TEMPERATURE",
+    "TIME",
+    "TOLERANCE",
+    "TORQUE",
+];
+
 /// The command of a question.
 fn of(entry: &Entry) -> Command {
-    let mut c = entry.options(Command::new(entry.name));
+    let mut c = entry.options(Command::new(entry.name)).mut_args(|a| {
+        let is_number = a.get_value_names().is_some_and(|names| names.iter().any(|n| NUMBERS.contains(&n.as_str())));
+        if is_number { a.allow_hyphen_values(true) } else { a }
+    });
     let file =
         |name: &'static str| Arg::new("file").value_name(name).help("Train file (TOML), or - for standard input");
     c = match entry.of {

@@ -180,7 +180,7 @@ fn hand_out(
 ) -> Result<String, Ended> {
     let file = match asked.form {
         TEXT => {
-            let notes = notes(answer.notes(), of);
+            let notes = notes(&answer.notes(), of);
             let text = match asked.entry.notes_first {
                 true => notes + &answer.text(),
                 false => answer.text() + &notes,
@@ -213,6 +213,11 @@ fn hand_out(
     };
     let said = deliver(file, asked.output, asked.force)?;
     tell(&answer.told());
+    // Text has them in it; what machines read comes alone.
+    let unsaid = if [TEXT, JSON, CSV, JSON_LINES, PARQUET].contains(&asked.form) { vec![] } else { answer.unsaid() };
+    if !unsaid.is_empty() {
+        tell(&[notes(&unsaid, of).trim_end().to_owned()]);
+    }
     Ok(said)
 }
 

@@ -122,7 +122,7 @@ impl Answer {
 
     /// Warnings and notes, as JSON, each at its place in the first train; and for eyes.
     fn notes(&self) -> (String, String) {
-        let mut all: Diagnostics = self.answer.notes().iter().cloned().collect();
+        let mut all: Diagnostics = self.answer.notes().into_iter().collect();
         let mut told = String::new();
         if let Some(given) = self.of.first() {
             given.model.locate(&mut all);

@@ -344,7 +344,7 @@ pub struct Margin {
     pub speed: Option<Boundary>,
     /// The mesh (or set) whose efficiency is nearest to the value at which the train locks.
     pub lock: Option<LockMargin>,
-    /// The factor on all losses `1 − η` at which the train locks.
+    /// The factor on all losses `1 − η` of basic efficiencies, those of whole sets, at which the train locks.
     pub lock_loss_factor: Option<f64>,
 }
 

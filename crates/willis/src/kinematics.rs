@@ -558,9 +558,9 @@ impl<'t> Configuration<'t> {
     }
 
     /// Exact speeds for prescribed ones. What contradicts the gears by less than [`Train::SAME_SPEED`], or within the
-    /// [tolerance](Train::speed_tolerance) of the train, follows the speeds given before it. `Err` gives the members of
-    /// a contradiction: each list is tied together by the gears in a way that the prescribed values do not respect.
-    pub fn motion(&self, prescribed: &[(MemberId, Quantity)]) -> Result<Motion, Vec<Vec<MemberId>>> {
+    /// [tolerance](Train::speed_tolerance) of the train, follows the speeds given before it. `Err` gives the
+    /// contradictions: members that the gears tie together in a way that the prescribed values do not respect.
+    pub fn motion(&self, prescribed: &[(MemberId, Quantity)]) -> Result<Motion, Vec<Deviation>> {
         let members: Vec<_> = prescribed.iter().map(|(m, _)| *m).collect();
         self.motion_by(&self.transfer(&members), prescribed)
     }
@@ -570,7 +570,7 @@ impl<'t> Configuration<'t> {
         &self,
         transfer: &Transfer,
         prescribed: &[(MemberId, Quantity)],
-    ) -> Result<Motion, Vec<Vec<MemberId>>> {
+    ) -> Result<Motion, Vec<Deviation>> {
         let members: Vec<_> = prescribed.iter().map(|(m, _)| *m).collect();
         let (values, pi_power) = common(prescribed.iter().map(|(_, q)| q));
         let dot = |factors: &[Rational]| {
@@ -587,7 +587,7 @@ impl<'t> Configuration<'t> {
             let relative = excess.to_f64().abs() / most;
             // Beyond floating point nothing can be said to be small.
             if relative.is_nan() || relative > self.train.speed_tolerance {
-                broken.push(tied(c));
+                broken.push(Deviation { members: tied(c), relative });
             } else if relative > Train::SAME_SPEED && deviation.as_ref().is_none_or(|d| relative > d.relative) {
                 deviation = Some(Deviation { members: tied(c), relative });
             }

@@ -12,7 +12,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{Document, Key, Reading, Specification, Train};
 
 pub use target::{ShaftRef, Target};
-pub(crate) use target::{oil_temperature, quantity};
+pub(crate) use target::{oil_temperature, quantity, shaft};
 
 /// A gear train as data, any quantity of which can be read and set anew.
 ///

@@ -68,7 +68,13 @@ impl Question for Calibrate {
             operation: self.operation.clone(),
             trust_all: self.trust_all,
         };
-        Ok(study::calibrate(&of[0].model, &request, work)?)
+        study::calibrate(&of[0].model, &request, work).map_err(|wrong| {
+            // What is wrong with the tests stands in their table.
+            match wrong.iter().any(|d| d.code == Code::BadTable) {
+                true => Refusal::File(wrong, self.data.clone()),
+                false => wrong.into(),
+            }
+        })
     }
 
     fn text(&self, answer: &Calibration, _: &[Given]) -> String {

@@ -41,7 +41,7 @@ pub struct Design {
     #[cfg_attr(feature = "clap", arg(long, value_name = "KIND", conflicts_with_all = ["file", "like"]))]
     pub kind: Option<String>,
     /// Of --kind: the ratio, a number or low..high.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "RATIO", conflicts_with = "file", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RATIO", conflicts_with = "file"))]
     pub ratio: Option<String>,
     /// Of --kind and --like: how far a ratio may be off, as a part. Default: 0.01.
     #[cfg_attr(feature = "clap", arg(long, value_name = "PART", conflicts_with = "file"))]

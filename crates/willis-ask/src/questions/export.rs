@@ -36,10 +36,10 @@ pub struct Export {
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION", conflicts_with = "all_states"))]
     pub operation: Option<String>,
     /// Speeds of the input: 200rpm..2200rpm:11 are 11 values; or 500rpm,1000rpm.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "RANGE", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RANGE"))]
     pub speeds: Option<String>,
     /// Torques on the input, positive driving, negative coasting: '-500 N m..500 N m:21'.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "RANGE", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RANGE"))]
     pub torques: Option<String>,
     /// Oil temperatures: 40degC,90degC. Most formats take one.
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "TEMPERATURE"))]

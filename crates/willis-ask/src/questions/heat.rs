@@ -36,7 +36,7 @@ pub struct Heat {
     #[cfg_attr(feature = "clap", arg(long, value_name = "TIME"))]
     pub duration: Option<String>,
     /// Oil temperature at the start of the warm-up: '-20 degC'. Default: that of the file, or of the air.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEMPERATURE", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEMPERATURE"))]
     pub start: Option<String>,
     /// A duty cycle (CSV, as for `willis cycle`), or - for standard input: its steady state when it repeats itself.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv"))]

@@ -35,7 +35,7 @@ pub struct Schemes {
     pub sets: Option<usize>,
     /// Tooth ratio of each set, ring over sun: 109/67,91/49,97/39. Fractions are the teeth of ring and sun. Default: those of
     /// a known transmission with as many sets (2: GM 440-T4, 3: Allison 2000, 4: ZF 8HP70).
-    #[cfg_attr(feature = "clap", arg(long, value_name = "RATIO", value_delimiter = ',', allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RATIO", value_delimiter = ','))]
     pub k: Vec<String>,
     /// Keep these permanent connections and search the elements: a train file, of which the tooth ratios are kept too, or
     /// the digits of a layout, as in 345360678751.
@@ -54,13 +54,13 @@ pub struct Schemes {
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub reverse: Option<usize>,
     /// The ratios of forward gears lie here: 0.5..6; an end may be left out.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "MIN..MAX", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MIN..MAX"))]
     pub forward_range: Option<String>,
     /// The ratios of reverse gears, without their sign, lie here: 1.5..7.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "MIN..MAX", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MIN..MAX"))]
     pub reverse_range: Option<String>,
     /// The steps, each a ratio over that of the next gear, lie here: 1.1..2.2.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "MIN..MAX", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MIN..MAX"))]
     pub step: Option<String>,
     /// No step is larger than the one before it.
     #[cfg_attr(feature = "clap", arg(long))]
@@ -69,19 +69,16 @@ pub struct Schemes {
     #[cfg_attr(feature = "clap", arg(long))]
     pub not_minimal: bool,
     /// No shaft turns faster, per speed of the input: 3.5.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR"))]
     pub max_speed: Option<String>,
     /// No element carries more, per torque of the input and without losses: 4.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FACTOR"))]
     pub max_torque: Option<String>,
     /// No gear has a lower efficiency when the input drives, by tooth friction alone: 0.95.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "EFFICIENCY", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "EFFICIENCY"))]
     pub min_efficiency: Option<String>,
     /// Efficiencies of the meshes of sun and planet, and of planet and ring, in every set. Default: 0.98,0.99.
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, value_name = "EFFICIENCY", value_delimiter = ',', allow_hyphen_values = true)
-    )]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "EFFICIENCY", value_delimiter = ','))]
     pub mesh_efficiency: Vec<String>,
     /// At most so many of the elements are brakes.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]

@@ -45,19 +45,16 @@ pub struct Simulate {
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000_000)))]
     pub samples: Option<u32>,
     /// Rows and events from this time on: '2 s'. The run begins at its start, and energies are those of the whole run.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME"))]
     pub from: Option<String>,
     /// End the run here instead of at the end of the scenario: '3 s'.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME"))]
     pub to: Option<String>,
     /// Relative tolerance of speeds and angles, from 1e-13 to 1e-2 [default: 1e-10].
     #[cfg_attr(feature = "clap", arg(long, value_name = "TOLERANCE", value_parser = tolerance))]
     pub tolerance: Option<f64>,
     /// Use fixed time steps of this length (real time): '1 ms'.
-    #[cfg_attr(
-        feature = "clap",
-        arg(long, value_name = "TIME", conflicts_with = "tolerance", allow_hyphen_values = true)
-    )]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME", conflicts_with = "tolerance"))]
     pub fixed_step: Option<String>,
     /// Take the sign of each tooth force from the step before, as in Galvagno 2010, to show the error of that.
     #[cfg_attr(feature = "clap", arg(long, requires = "fixed_step"))]

@@ -28,13 +28,13 @@ pub struct Table {
     pub state: Option<String>,
     /// Show speeds in rpm at this speed of the input, and compute losses there: 2000rpm. Losses without it: at the speed of
     /// the file's first operation in which the input drives.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "SPEED", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SPEED"))]
     pub speed: Option<String>,
     /// Compute losses at this torque at the input: 150Nm. Without it: at the load of that operation.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TORQUE", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TORQUE"))]
     pub torque: Option<String>,
     /// Compute losses at this oil temperature: 80degC. Without it: at that of the operation, the heat balance, or the oil.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TEMPERATURE", allow_hyphen_values = true))]
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TEMPERATURE"))]
     pub temperature: Option<String>,
     /// Torques without losses, and no losses at a load.
     #[cfg_attr(feature = "clap", arg(long))]

@@ -124,7 +124,31 @@ pub fn written(train: &Train, solved: bool) -> Result<Written, Diagnostics> {
     w.bearings();
     w.elements();
     let cases = w.loads(solved);
+    w.file.notes.extend(left_out(train));
     Ok(Written { text: w.text(&cases), notes: w.file.notes })
+}
+
+/// What of a train a reader of the file does not find.
+fn left_out(train: &Train) -> Option<String> {
+    let loses =
+        |m: &&Mesh| !m.computed && (m.efficiency.forward.to_f64() < 1.0 || m.efficiency.backward.to_f64() < 1.0);
+    let given = train.meshes().iter().filter(loses).count();
+    let parts = [
+        ("given mesh efficiency", "given mesh efficiencies", given),
+        ("seal", "seals", train.seals().len()),
+        ("oil pump", "oil pumps", train.pumps().len()),
+        ("rotor", "rotors", train.rotors().len()),
+        ("drag", "drags", train.drags().len()),
+        ("loss table", "loss tables", train.loss_tables().len()),
+        ("inertia", "inertias", train.inertias().iter().filter(|i| i.value > 0.0).count()),
+        ("compliant shaft", "compliant shafts", train.shafts().len()),
+        ("scenario", "scenarios", train.scenarios().len()),
+        ("thermal network", "thermal networks", usize::from(train.heat().is_some())),
+    ];
+    let some = parts.into_iter().filter(|p| p.2 > 0);
+    let words = some.map(|(one, many, n)| format!("{n} {}", if n == 1 { one } else { many }));
+    let words = words.collect::<Vec<_>>().join(", ");
+    (!words.is_empty()).then(|| format!("not carried over: {words}"))
 }
 
 /// Refuses what cannot be said.

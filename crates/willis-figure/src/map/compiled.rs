@@ -7,7 +7,7 @@
 use willis::compiled::{CompileRequest, CompiledOutput, CompiledTrain, PointVerdict as Compiled, Workspace};
 use willis::model::{ShaftRef, Target};
 use willis::study::{PointAnswer, PointVerdict};
-use willis::train::{FRAME, Load, MemberId, Operation, Train};
+use willis::train::{FRAME, Load, MemberId, Operation, ShiftElementKind, Train};
 use willis::unstable;
 
 use super::told::{PowerRole, Told, ways};
@@ -70,7 +70,9 @@ impl CompiledProbe {
         input: Option<MemberId>,
     ) -> Option<Self> {
         let varies = |t: &Target| matches!(t, Target::Speed(_) | Target::Torque(_));
+        let one_way = train.shift_elements().iter().any(|e| e.kind == ShiftElementKind::OneWay);
         if train.is_physical()
+            || one_way
             || !train.variators().is_empty()
             || !answer.is_unique()
             || !axes.iter().all(|a| varies(a))

@@ -97,7 +97,7 @@ pub fn law_of(family: &str, id: &str) -> String {
 /// A law that causes a loss of some kind, by its title; a law of one name stands in several families.
 pub fn law_title(kind: Option<LossKind>, id: &str) -> String {
     if id == "given" {
-        return "efficiency given".to_owned();
+        return if kind == Some(LossKind::Drag) { "torque given" } else { "efficiency given" }.to_owned();
     }
     let families = kind.map_or(&[][..], LossKind::families);
     let all = entries();

@@ -105,10 +105,10 @@ fn subtitle(data: &Vibration) -> String {
     }
 }
 
-/// A mode by its number and frequency.
-fn heading(mode: &VibrationMode) -> String {
+/// A mode by its number, frequency and damping ratio, which is called so.
+fn heading(mode: &VibrationMode, damping: &str) -> String {
     let Some(k) = mode.number else { return "Without strain: 0 Hz".to_owned() };
-    let damped = mode.damping_ratio.map_or(String::new(), |z| format!(", damping ratio {}", digits(z)));
+    let damped = mode.damping_ratio.map_or(String::new(), |z| format!(", {damping} {}", digits(z)));
     format!("Mode {k}: {} Hz{damped}", digits(mode.frequency_hz))
 }
 
@@ -117,7 +117,7 @@ fn words(data: &Vibration) -> String {
     let all = data.modes.iter().map(|m| {
         let largest = m.shape.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()));
         let most = largest.map_or(String::new(), |p| format!("; {} swings most", p.name));
-        format!("{}{most}.", heading(m))
+        format!("{}{most}.", heading(m, "damping ratio"))
     });
     format!("{} {}", subtitle(data), all.collect::<Vec<_>>().join(" "))
 }
@@ -158,7 +158,7 @@ struct Stroke {
 
 impl Panel<'_> {
     fn draw(&self) -> Group {
-        let head = fit(&heading(self.mode), self.cell / BOLD, 13.0);
+        let head = fit(&heading(self.mode, "ζ"), self.cell / BOLD, 13.0);
         let title = text(self.left, self.top, 13.0, Anchor::Start, &head).set("font-weight", "bold");
         Group::new()
             .add(title)

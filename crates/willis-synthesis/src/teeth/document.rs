@@ -6,7 +6,7 @@
 //! planets = "3..5"                       # of every set that does not say it
 //! mismatch = [-1, 0, 1]                  # r - s - 2 p and the like; default 0
 //! rules = ["assembly", "clearance", "hunting"]     # default: assembly, clearance
-//! gap = "0.5"                            # between tips of planets, in modules; default 0
+//! gap = "0.5"                            # between tips of planets, in modules; default 0. Ravigneaux: half between kinds
 //! module = ["0.5 mm", "0.6 mm"]          # one, or a list, of sets without a geometry
 //! limits = { ring_diameter = "90 mm", planet_spin = 5, member_speed = 3.0, element_torque = 2.5 }
 //! require = { forward = 0.7, backward = 0.6, lock_margin = 1.5 }

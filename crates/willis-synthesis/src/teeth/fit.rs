@@ -235,7 +235,9 @@ impl Ravigneaux {
 
     /// Whether short planets of so many teeth fit: inside the ring, in a triangle with the long ones, clear of their
     /// neighbours of both kinds. `A = (s_2 + r)/2`, `B = s_1 + p_S`, `C = p_L + p_S`, `cos β = (A² + B² − C²)/(2 A B)`;
-    /// neighbour of the other kind: `√(A² + B² − 2 A B cos(2π/N − β)) > p_S + p_L + 4 + gap`.
+    /// neighbour of the other kind: `√(A² + B² − 2 A B cos(2π/N − β)) > p_S + p_L + 4 + gap`. As `A`, `B` and `C` are twice
+    /// the distances of axes, half of the gap is kept between planets of different kinds, and between a long planet and the
+    /// small sun ([`Self::long_clears`]); between planets of one kind it is kept whole.
     pub fn short_fits(&self, short: i64, planets: i64, gap: Length) -> bool {
         let b = self.small_sun + short;
         if b + short + 2 > self.ring || !self.long_clears(planets, gap) || !planets_clear((b, 1), planets, short, gap) {

@@ -6,7 +6,7 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 
 use super::answer::{DesignAnswer, DesignRow, OwnTrain, Ranking, Recomputed};
 use super::document::{Design, DesignedSet, at, paths, planet_tables, set_kind, tables};
-use super::front::covers;
+use super::front::beats;
 use super::laws::Lawful;
 use super::layout::SetKind;
 use super::range::{Counts, MOST_TEETH};
@@ -64,7 +64,7 @@ impl Design {
         let decides = if ranking.recomputed == Recomputed::All { &value } else { &judged };
         here.missed(&teeth, &row, decides, &mut fails);
         let point = self.point(&value, &teeth);
-        let better = |other: &&Vec<f64>| covers(other, &point) && **other != point;
+        let better = |other: &&Vec<f64>| beats(other, &point);
         let better = front.iter().filter(better).count() as u64;
         Ok(OwnTrain { name: name.to_owned(), fails, better, row })
     }

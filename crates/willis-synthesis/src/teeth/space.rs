@@ -36,7 +36,8 @@ pub struct SetSpace {
     pub planets: Vec<i64>,
     /// Differences from the teeth that gears without profile shift would need: `r − s − 2 p` and the like.
     pub mismatch: Vec<i64>,
-    /// Least gap between the tips of neighbouring planets, modules.
+    /// Least gap between the tips of neighbouring planets, modules; of a Ravigneaux set half of it between planets of
+    /// different kinds, and between a long planet and the small sun.
     pub gap: Length,
     /// Rules in force, in the order of [`Rule::ALL`].
     pub rules: Vec<Rule>,

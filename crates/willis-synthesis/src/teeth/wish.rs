@@ -145,7 +145,9 @@ impl Ratio {
         }
         let aim = self.aim.to_f64();
         let off = |r: f64| if aim == 0.0 { r.abs() } else { (r / aim - 1.0).abs() };
-        if self.windows.len() > 1 { off(ratio).min(off(-ratio)) } else { off(ratio) }
+        let off = if self.windows.len() > 1 { off(ratio).min(off(-ratio)) } else { off(ratio) };
+        // A ratio of teeth that is met is met exactly.
+        if off < 1e-14 { 0.0 } else { off }
     }
 }
 

@@ -213,7 +213,7 @@ fn follows(train: &Train, state: Option<usize>) -> Option<[MemberId; 2]> {
 pub struct AskedLoad {
     /// Speed of the input.
     pub speed: Option<Quantity>,
-    /// Torque at the input.
+    /// Torque at the input, positive: it drives whichever way the input turns.
     pub torque: Option<Quantity>,
     /// Oil temperature, K.
     pub temperature: Option<f64>,
@@ -229,18 +229,17 @@ impl AskedLoad {
                 wrong.push(Diagnostic::new(Code::OutOfRange, "", text).hint("give another value, or leave it out"));
             }
         }
-        if let (Some(speed), Some(torque)) = (&self.speed, &self.torque)
-            && speed.si() * torque.si() < 0.0
-        {
-            let (rpm, torque) = (speed.si() * 30.0 / std::f64::consts::PI, torque.si());
-            let text = format!("an input at {rpm:.6} rpm under {torque:.6} N m is driven, it does not drive");
-            wrong.push(Diagnostic::new(Code::OutOfRange, "", text).hint("give speed and torque the same sign"));
+        if let Some(torque) = self.torque.as_ref().filter(|q| q.value.sign() < 0) {
+            let text =
+                format!("a torque of {:.6} N m at the input brakes it, and a driven train is asked for", torque.si());
+            let hint = "give it as positive: it drives whichever way the input turns";
+            wrong.push(Diagnostic::new(Code::OutOfRange, "", text).hint(hint));
         }
         wrong
     }
 
-    /// The load of an input; none where neither this nor the file says at which speed, or under which torque. Asked the other
-    /// way round than the file has it, the input drives that way.
+    /// The load of an input; none where neither this nor the file says at which speed, or under which torque. Where it is asked
+    /// to turn the other way than in the file, it drives that way.
     fn of(&self, train: &Train, input: MemberId) -> Option<DrivingLoad> {
         let all = self.speed.is_some() && self.torque.is_some() && self.temperature.is_some();
         let file = if all { None } else { DrivingLoad::of_file(train, input) };
@@ -248,13 +247,17 @@ impl AskedLoad {
         let temperature = self.temperature.or_else(|| file.as_ref().and_then(|f| f.temperature));
         let operation = file.as_ref().and_then(|f| f.operation.clone()).filter(|_| of_file);
         let speed = self.speed.clone().or_else(|| file.as_ref().map(|f| f.speed.clone()));
-        let load = self.torque.clone().map(Load::Torque).or_else(|| file.map(|f| f.load));
-        let mut load = DrivingLoad { speed: speed?, load: load?, temperature, operation };
-        if !load.drives() {
-            match &mut load.load {
-                Load::Torque(torque) if self.torque.is_none() => torque.value = -&torque.value,
-                _ => load.speed.value = -&load.speed.value,
-            }
+        let speed = speed?;
+        let load = match self.torque.clone() {
+            Some(torque) => Load::Torque(torque),
+            None => file?.load,
+        };
+        let mut load = DrivingLoad { speed, load, temperature, operation };
+        // A power drives by itself.
+        if !load.drives()
+            && let Load::Torque(torque) = &mut load.load
+        {
+            torque.value = -&torque.value;
         }
         Some(load)
     }

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::kinematics::{Configuration, Coupled, Motion};
+use crate::kinematics::{Configuration, Coupled, Deviation, Motion};
 use crate::operating_point::{Physics, Step};
 use crate::power_flow::Known;
 use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
@@ -140,7 +140,7 @@ pub(super) fn settle_at<'t>(
     let keep: Vec<MemberId> = prescribed.iter().chain(&dragged).copied().collect();
     let c = Configuration::new(train, engaged, &operation.fixed, &keep);
 
-    let contradicts = |members| contradiction(&c, operation, members);
+    let contradicts = |broken| contradiction(&c, operation, broken);
     let motion =
         c.motion(&operation.speeds).map_err(|broken| broken.into_iter().map(contradicts).collect::<Vec<_>>())?;
     if (1..train.members.len()).any(|m| motion.si(MemberId(m)).is_some_and(|w| !w.is_finite())) {
@@ -160,6 +160,7 @@ pub(super) fn settle_at<'t>(
     let driven: Vec<[usize; 2]> = operation.machines.iter().map(|(at, _)| *at).collect();
     let Coupled { c, motion, at_rest, open } = gears.coupled(&motion, &driven);
     let problem = Loads::new(&c, operation, &motion, &[])?;
+    let turned = turned_back(&c, &motion);
     let loose: Vec<_> =
         (1..train.members.len()).map(MemberId).filter(|m| motion.speeds[m.0].is_none() && !c.inner[m.0]).collect();
     let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
@@ -173,7 +174,9 @@ pub(super) fn settle_at<'t>(
         Ok(equilibrium) => equilibrium,
         Err(why) => {
             let why = obstacle(&c, &problem, &motion, &prescribed, &loose, why)?;
-            return Ok(Settled::without(report, Verdict::Undetermined, why));
+            let mut settled = Settled::without(report, Verdict::Undetermined, why);
+            settled.findings.extend(turned.into_iter().map(Finding::Why));
+            return Ok(settled);
         }
     };
     let setting = Setting { c: &c, motion: &motion, operation, sigma: &sigma };
@@ -221,7 +224,14 @@ pub(super) fn settle_at<'t>(
         // Drag may eat a small load up; only tooth friction locks.
         locks: c.degrees_of_freedom() == 1 && !driven.unwrap_or_else(|| all.iter().any(|s| !s.all_dissipated)),
     };
-    let (verdict, whys) = case.verdict(&all);
+    let (mut verdict, mut whys) = case.verdict(&all);
+    // What a one-way clutch does not allow is no answer, however well it balances.
+    let held_back: Vec<Vec<Why>> = all.iter().map(|s| held_back(train, s)).collect();
+    let impossible = !turned.is_empty() || !held_back.is_empty() && held_back.iter().all(|own| !own.is_empty());
+    if impossible && verdict != Verdict::Locked {
+        verdict = Verdict::Undetermined;
+    }
+    whys.splice(..0, turned.into_iter().chain(held_back.into_iter().flatten()));
     let mut report = OperationReport { verdict, certificate: Some(certificate.into()), ..report };
     whys.first().into_iter().for_each(|why| report.explain(why));
     findings.extend(whys.into_iter().map(Finding::Why));
@@ -232,7 +242,6 @@ pub(super) fn settle_at<'t>(
         _ => report.solutions = all,
     }
     for s in &report.solutions {
-        findings.extend(held_back(train, s));
         findings.extend(near_boundary(s));
         findings.extend(s.beyond_limits.iter().cloned().map(Finding::Beyond));
         findings.extend(s.doubts.iter().cloned().map(Finding::Doubt));
@@ -263,7 +272,7 @@ impl Settled<'_> {
 }
 
 /// Prescribed speeds that the gears do not allow.
-fn contradiction(c: &Configuration<'_>, operation: &Operation, members: Vec<MemberId>) -> Refusal {
+fn contradiction(c: &Configuration<'_>, operation: &Operation, Deviation { members, relative }: Deviation) -> Refusal {
     let rpm = |w: f64| w * 30.0 / std::f64::consts::PI;
     let last = *members.last().expect("a conflict names members");
     let given = operation.speeds.iter().find(|(m, _)| *m == last).map_or(0.0, |(_, q)| q.si());
@@ -271,7 +280,7 @@ fn contradiction(c: &Configuration<'_>, operation: &Operation, members: Vec<Memb
     let others: Vec<_> = operation.speeds.iter().filter(|(m, _)| *m != last).cloned().collect();
     let follows = c.motion(&others).ok().and_then(|m| m.si(last)).map(rpm);
     let freedoms = c.degrees_of_freedom();
-    Refusal::Contradiction { freedoms, members, follows_rpm: follows, given_rpm: rpm(given) }
+    Refusal::Contradiction { freedoms, members, relative, follows_rpm: follows, given_rpm: rpm(given) }
 }
 
 /// Rank of the prescribed speeds.
@@ -385,15 +394,34 @@ fn point<'t>(c: &Configuration<'t>, motion: &Motion, branch: &Branch<'_>) -> Poi
 }
 
 /// One-way clutches that would have to hold against their free direction.
-fn held_back(train: &Train, s: &SolutionReport) -> Vec<Finding> {
+fn held_back(train: &Train, s: &SolutionReport) -> Vec<Why> {
     let one_way = s.shift_elements.iter().filter(|(_, e)| e.kind == ShiftElementKind::OneWay);
     one_way
         .filter_map(|(name, e)| {
-            let element = ShiftElementId(train.shift_elements.iter().position(|x| x.name == *name)?);
-            let torque = e.torque_n_m.filter(|t| t * f64::from(train.shift_elements[element.0].blocks) > 0.0)?;
-            Some(Finding::OneWay(element, torque))
+            let element = train.shift_elements.iter().find(|x| x.name == *name)?;
+            let torque_n_m = e.torque_n_m.filter(|t| t * f64::from(element.blocks) > 0.0)?;
+            Some(Why::CannotHold { clutch: name.clone(), member: e.members[0].clone(), torque_n_m })
         })
         .collect()
+}
+
+/// One-way clutches that are open and turn the way they block.
+pub(super) fn turned_back(c: &Configuration<'_>, motion: &Motion) -> Vec<Why> {
+    let train = c.train;
+    let open = (0..train.shift_elements.len()).map(ShiftElementId).filter(|e| !c.engaged.contains(e));
+    let turns = |id: ShiftElementId| {
+        let element = &train.shift_elements[id.0];
+        let [Some(a), Some(b)] = element.members.map(|m| motion.si(m)) else { return None };
+        let blocked = (a - b) * f64::from(element.blocks);
+        // What is prescribed in few digits may leave a trace of a speed that is zero.
+        let is_some = blocked > train.speed_tolerance * a.abs().max(b.abs());
+        (element.kind == ShiftElementKind::OneWay && is_some).then(|| Why::WouldLock {
+            clutch: element.name.clone(),
+            members: element.members.map(|m| train.member_name(m).to_owned()),
+            speed_rad_s: a - b,
+        })
+    };
+    open.filter_map(turns).collect()
 }
 
 /// Prescribed values within a percent of a boundary.

@@ -21,7 +21,7 @@ use crate::train::{Load, MemberId, Operation, ShiftElementId, ShiftElementKind, 
 use super::doubts::doubts;
 use super::heat::{TOLERANCE, made_by};
 use super::loads::Loads;
-use super::operation::Pattern;
+use super::operation::{Pattern, turned_back};
 use super::rounds::{Acting, Agreed, KnownIdle, Rounds};
 use super::solution::{efficiency, held, member};
 use super::words::{self, Finding};
@@ -272,7 +272,8 @@ impl<'t> PointSeries<'t> {
         }
         let Situation { c, transfer, physics, patterns, idle, .. } = self.situation(operation)?;
         let motion = c.motion_by(transfer, &operation.speeds).ok().filter(|motion| motion.deviation.is_none())?;
-        if !(0..motion.speeds.len()).all(|m| motion.si(MemberId(m)).is_some_and(f64::is_finite)) {
+        let turns = (0..motion.speeds.len()).all(|m| motion.si(MemberId(m)).is_some_and(f64::is_finite));
+        if !turns || !turned_back(c, &motion).is_empty() {
             return None;
         }
         let problem = Loads::new(c, operation, &motion, &[]).ok().filter(|problem| !problem.are_none())?;

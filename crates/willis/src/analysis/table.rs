@@ -44,9 +44,12 @@ pub(super) fn row(
     };
     // A variator sets what the gears leave open.
     let varied = ratio == Ratio::Undetermined && !train.variators.is_empty();
-    if let (Some(text), Some(_), false) = (&no_ratio, state, varied) {
+    // As drawn a train may be meant for several speeds; one that nothing can turn is not.
+    let told = state.is_some() || matches!(no_ratio, Some(Why::NothingTurns { .. }));
+    if let (Some(text), true, false) = (&no_ratio, told, varied) {
         let code = if ratio == Ratio::Undetermined { Code::Undetermined } else { Code::KinematicallyLocked };
-        diagnostics.push(Diagnostic::new(code, &place, format!("state {name}: {text}")));
+        let of = if state.is_some() { format!("state {name}: ") } else { String::new() };
+        diagnostics.push(Diagnostic::new(code, &place, format!("{of}{text}")));
     }
     // A ratio that floating point cannot hold stays a fraction; nothing else can be told.
     let beyond = exact.as_ref().is_some_and(|r| !(1e-300..1e300).contains(&r.to_f64().abs()));

@@ -70,6 +70,24 @@ pub enum Why {
         /// The one-way clutch.
         clutch: String,
     },
+    /// A one-way clutch would have to hold this torque against its free direction.
+    CannotHold {
+        /// The one-way clutch.
+        clutch: String,
+        /// Its first member, on which the torque would act.
+        member: String,
+        /// Torque, N m.
+        torque_n_m: f64,
+    },
+    /// A one-way clutch that is open would turn in the direction that it blocks.
+    WouldLock {
+        /// The one-way clutch.
+        clutch: String,
+        /// What it joins.
+        members: [String; 2],
+        /// Speed of the first relative to the second, rad/s.
+        speed_rad_s: f64,
+    },
     /// More terminals must carry a load.
     LoadMissing,
     /// A freedom is left over, so nothing carries the load.
@@ -203,6 +221,12 @@ impl Why {
                 hint("a rigid quasi-static model cannot choose between them; better mesh efficiency makes it unique"),
             ),
             Self::LossesTakeAll | Self::AllPutIn { .. } => (Code::AllDissipated, None),
+            Self::CannotHold { .. } => {
+                (Code::OneWay, hint("analyse the state without it, or engage a brake beside it"))
+            }
+            Self::WouldLock { .. } => {
+                (Code::OneWay, hint("engage it in this state, or check which direction it blocks"))
+            }
             _ => return None,
         })
     }
@@ -217,9 +241,10 @@ impl fmt::Display for Why {
         match self {
             Self::RatioTooLarge => f.write_str("the ratio is beyond floating point"),
             Self::OutputAtRest { output, input } => write!(f, "{output} stands still while {input} turns"),
-            Self::NothingTurns { engaged } => {
-                write!(f, "nothing can turn{}; release a shift element", with(engaged))
-            }
+            Self::NothingTurns { engaged } => f.write_str(&match engaged[..] {
+                [] => "nothing can turn: the gears hold each other".to_owned(),
+                _ => format!("nothing can turn{}; release a shift element", with(engaged)),
+            }),
             Self::InputLocked { input, engaged, locked } => {
                 write!(f, "{input} cannot turn{}; locked: {}", with(engaged), locked.join(", "))
             }
@@ -235,6 +260,18 @@ impl fmt::Display for Why {
             Self::Overruns { clutch } => {
                 write!(f, "the one-way clutch {clutch} overruns: no load is carried this way")
             }
+            Self::CannotHold { clutch, member, torque_n_m } => write!(
+                f,
+                "the one-way clutch {clutch} would have to hold {member} against its free direction ({} N m); it \
+                 overruns instead and the torques shown do not arise",
+                short(*torque_n_m)
+            ),
+            Self::WouldLock { clutch, members: [first, second], speed_rad_s } => write!(
+                f,
+                "{first} would turn at {} rpm relative to {second}, the direction that the one-way clutch {clutch} blocks; \
+                 it locks instead and this motion does not arise",
+                short(speed_rad_s * 30.0 / std::f64::consts::PI)
+            ),
             Self::LoadMissing => f.write_str("a load is missing"),
             Self::LoadNotCarried => f.write_str("a freedom is left over: the load is not carried"),
             Self::Indeterminate => f.write_str("statically indeterminate"),
@@ -258,7 +295,7 @@ impl fmt::Display for Why {
                 "{} stands still in this motion and can take no power, so nothing balances the load",
                 members.join(", ")
             ),
-            Self::Unloaded => f.write_str("no torque or power acts on any terminal"),
+            Self::Unloaded => f.write_str("no torque or power reaches a gear that can turn"),
             Self::NotConverged => {
                 f.write_str("losses and torques were not brought into agreement: what is shown is the last step")
             }

@@ -8,8 +8,9 @@ use super::{BeyondLimit, Boundary, Doubt, OutsideLaw, SpeedDeviation, StictionRa
 /// Why an operation makes no question.
 #[derive(Clone, Debug)]
 pub(super) enum Refusal {
-    /// The gears tie these members together, and not as prescribed: the last one turns otherwise.
-    Contradiction { freedoms: usize, members: Vec<MemberId>, follows_rpm: Option<f64>, given_rpm: f64 },
+    /// The gears tie these members together, and not as prescribed: the last one turns otherwise. `relative` is what the
+    /// tolerance of speeds is compared with.
+    Contradiction { freedoms: usize, members: Vec<MemberId>, relative: f64, follows_rpm: Option<f64>, given_rpm: f64 },
     /// A speed that no number holds.
     SpeedTooLarge,
     /// A torque or power that no number holds.
@@ -47,8 +48,6 @@ pub(super) enum Finding {
     Doubt(Doubt),
     /// A law was used outside its range.
     Outside(OutsideLaw),
-    /// A one-way clutch would hold this torque, N m, against its free direction.
-    OneWay(ShiftElementId, f64),
     /// Prescribed speeds contradict the gears within the tolerance.
     Yield(SpeedDeviation),
     /// There is no heat balance, because the operating point has no single answer.
@@ -89,7 +88,7 @@ impl Refusal {
         let place = operation.place.as_str();
         let name = |m: MemberId| name_of(train, m);
         match self {
-            Self::Contradiction { freedoms, members, follows_rpm, given_rpm } => {
+            Self::Contradiction { freedoms, members, relative, follows_rpm, given_rpm } => {
                 let (last, others) = members.split_last().expect("a conflict names members");
                 let message = match others {
                     [] => format!("`{}` cannot turn, but {} rpm is prescribed", name(*last), short(*given_rpm)),
@@ -112,12 +111,13 @@ impl Refusal {
                 };
                 let d = Diagnostic::new(Code::ContradictorySpeeds, format!("{place}.speeds"), message).hint(hint);
                 // Measured speeds contradict each other a little.
-                match follows_rpm.map(|w| (w - given_rpm).abs() / w.abs().max(given_rpm.abs())) {
-                    Some(part) if part < Train::MOST_SPEED_TOLERANCE => d.hint(format!(
-                        "they differ by {} %; where speeds are measured, `speed_tolerance` says how much they may",
-                        significant(100.0 * part)
+                match *relative < Train::MOST_SPEED_TOLERANCE && !others.is_empty() {
+                    true => d.hint(format!(
+                        "the speeds contradict the gears by {} % of the largest, as the gears tie them; where speeds are \
+                         measured, `speed_tolerance` says by how much they may",
+                        significant(100.0 * relative)
                     )),
-                    _ => d,
+                    false => d,
                 }
             }
             Self::SpeedTooLarge => Diagnostic::new(Code::TooLarge, place, "a speed is beyond 1e308 rad/s"),
@@ -147,10 +147,10 @@ impl Refusal {
             }
             Self::MissingLoads { freedoms, coupled, at_rest, open, more } => {
                 let message = format!(
-                    "with {} {} can be left without a torque or power, but {} have none: {}",
+                    "with {} {} can be left without a torque or power, but {}: {}",
                     self::freedoms(*freedoms),
-                    balancing(*freedoms, *coupled),
-                    open.len(),
+                    balancing(*freedoms, *coupled, open.len().saturating_sub(*more)),
+                    if open.len() == 1 { "1 has none".to_owned() } else { format!("{} have none", open.len()) },
                     names(train, open.iter().copied()).join(", ")
                 );
                 let d = Diagnostic::new(Code::MissingTorque, format!("{place}.torques"), message);
@@ -160,7 +160,7 @@ impl Refusal {
                 let message = format!(
                     "with {} {} must be left without a prescribed torque to balance the train; here {} left",
                     self::freedoms(*freedoms),
-                    balancing(*freedoms, *coupled),
+                    balancing(*freedoms, *coupled, open + more),
                     if *open == 1 { "1 is".to_owned() } else { format!("{open} are") },
                 );
                 let hint = match train.terminals.is_empty() {
@@ -211,7 +211,7 @@ impl Finding {
             Self::Yield(d) => {
                 let (last, others) = d.members.split_last()?;
                 let message = format!(
-                    "the speeds of {} contradict the gears by {} % of the largest; `{last}` follows {}",
+                    "the speeds of {} contradict the gears by {} % of the largest, as the gears tie them; `{last}` follows {}",
                     d.members.join(", "),
                     significant(100.0 * d.relative),
                     if others.len() == 1 { "the other" } else { "the others" },
@@ -220,18 +220,6 @@ impl Finding {
             }
             Self::Doubt(doubt) => Diagnostic::new(Code::Implausible, place, doubt.to_string()),
             Self::Outside(law) => Diagnostic::new(Code::OutsideLaw, place, law.to_string()),
-            Self::OneWay(element, torque) => {
-                let element = &train.shift_elements[element.0];
-                let message = format!(
-                    "the one-way clutch {} would have to hold {} against its free direction ({} N m); it overruns \
-                     instead and the torques shown do not arise",
-                    element.name,
-                    train.member_name(element.members[0]),
-                    short(*torque)
-                );
-                Diagnostic::new(Code::OneWay, place, message)
-                    .hint("analyse the state without it, or engage a brake beside it")
-            }
             Self::NoHeat(verdict) => {
                 let message = match verdict {
                     Some(verdict) => format!(
@@ -336,13 +324,18 @@ fn resting(train: &Train, variators: &[usize], refusal: Diagnostic) -> Diagnosti
     variators.iter().map(|k| at_rest(train, *k)).fold(refusal, Diagnostic::hint)
 }
 
-/// How many terminals balance a train, whose variators settle so many torques.
-fn balancing(freedoms: usize, coupled: usize) -> String {
+/// How many terminals balance a train whose variators settle `coupled` torques. A freedom may be that of a member that no
+/// terminal moves, and a terminal may stand still.
+fn balancing(freedoms: usize, coupled: usize, terminals: usize) -> String {
+    let count = |n: usize| match n {
+        0 => "no terminal".to_owned(),
+        1 => "one terminal".to_owned(),
+        n => format!("{n} terminals"),
+    };
     match (coupled, freedoms.saturating_sub(coupled)) {
-        (0, _) => "as many terminals".into(),
-        (_, 0) => "and its variators no terminal".into(),
-        (_, 1) => "and its variators one terminal".into(),
-        (_, n) => format!("and its variators {n} terminals"),
+        (0, n) if n == terminals => "as many terminals".into(),
+        (0, _) => format!("{} (not each freedom moves one)", count(terminals)),
+        _ => format!("and its variators {}", count(terminals)),
     }
 }
 

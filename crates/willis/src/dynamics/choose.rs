@@ -10,9 +10,9 @@ use crate::train::SourceKind;
 
 use super::decision::Verdict;
 use super::engine::Engine;
-use super::event::short;
 use super::halt::Halt;
 use super::mode::{Mode, dot, dot_size};
+use super::rounding::short;
 
 /// Why there is no one mode.
 #[derive(Clone, Debug, PartialEq)]

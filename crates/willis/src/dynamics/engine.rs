@@ -94,6 +94,8 @@ pub(crate) struct Engine {
     pub beyond: Vec<LimitExceeded>,
     /// Machines that ran outside their maps, and when first.
     pub left_maps: Vec<(String, f64)>,
+    /// Machines that balance a bus and came to their limit of torque, and when first.
+    pub fell_short: Vec<(String, f64)>,
     /// What is in contact, and the decisions of what it does.
     pub contacts: Contacts,
     /// Whether one motion is certain in every state.
@@ -182,6 +184,7 @@ impl Engine {
             path_ends: vec![0; system.paths.len()],
             beyond: vec![],
             left_maps: vec![],
+            fell_short: vec![],
             scales,
             energy_scale: LEAST_ENERGY,
             unproved: 0,

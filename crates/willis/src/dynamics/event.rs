@@ -130,11 +130,6 @@ fn words(happenings: &[Happening]) -> String {
     happenings.iter().map(clause).collect::<Vec<_>>().join(", ")
 }
 
-/// A number for a sentence: six decimals at most, or seven digits where it is small.
-pub(super) fn short(x: f64) -> f64 {
-    if x.abs() >= 0.01 { (x * 1e6).round() / 1e6 } else { format!("{x:.6e}").parse().unwrap_or(x) }
-}
-
 /// Letters of names in a sentence.
 const LONG: usize = 36;
 

@@ -4,10 +4,10 @@ use crate::power_flow::{BeyondLimit, machine_beyond, ratio_beyond};
 use crate::train::{ControlKind, Machine, MemberId};
 
 use super::engine::{Engine, PathState};
-use super::event::short;
 use super::margins::NOISE;
 use super::mode::dot;
 use super::report::LimitExceeded;
+use super::rounding::short;
 use super::system::{BusMachine, Geared, GivenStore, MachineDoes, Path, PathKind};
 
 /// Change of a torque, relative to it, below which the map of a machine agrees with it.
@@ -65,6 +65,15 @@ impl Engine {
     /// The control of a variator with two members.
     fn control(&self, path: &Path) -> &ControlKind {
         &self.system.scenario.controls[path.control.expect("it is controlled")].kind
+    }
+
+    /// What the store of a bus is to give, W, where a machine balances it.
+    fn given_store(&self, path: &Path, store: &GivenStore, t: f64) -> f64 {
+        match store {
+            GivenStore::Signal => self.control(path).signal().value(t, self.inside, &|m| self.member_speed(m)),
+            GivenStore::Power(power) => *power,
+            GivenStore::Free => 0.0,
+        }
     }
 
     /// What a ratio would be at a state without its limits.
@@ -202,13 +211,7 @@ impl Engine {
                     }) else {
                         continue;
                     };
-                    let given = match store {
-                        GivenStore::Signal => {
-                            self.control(path).signal().value(t, self.inside, &|m| self.member_speed(m))
-                        }
-                        GivenStore::Power(power) => *power,
-                        GivenStore::Free => 0.0,
-                    };
+                    let given = self.given_store(path, store, t);
                     let taken: f64 = (machines.iter().zip(of_train))
                         .filter_map(|(m, of)| match m.does {
                             MachineDoes::Driven(source) => {
@@ -348,7 +351,8 @@ impl Engine {
             }
         };
         let mut left = std::mem::take(&mut self.left_maps);
-        for path in &self.system.paths {
+        let mut fell = std::mem::take(&mut self.fell_short);
+        for (k, path) in self.system.paths.iter().enumerate() {
             let v = &self.system.train.variators[path.variator];
             match &path.kind {
                 PathKind::Geared(geared) => {
@@ -357,9 +361,16 @@ impl Engine {
                     ratio_beyond(v, if turned { 1.0 / wanted } else { wanted }).into_iter().for_each(&mut note);
                 }
                 PathKind::Pushed { .. } => {}
-                PathKind::Bus { machines, .. } => {
+                PathKind::Bus { machines, store, .. } => {
                     for (m, of) in machines.iter().zip(v.machines()) {
                         let PathSide { speed, torque } = self.machine_side(m, t);
+                        if matches!(m.does, MachineDoes::Balances(_)) && fell.iter().all(|(name, _)| *name != of.name) {
+                            let [wanted, gives] = [self.given_store(path, store, t), self.path_powers(k, t)[0]];
+                            // Far more than rounding, and far less than anybody would miss.
+                            if (gives - wanted).abs() > 1e-6 * gives.abs().max(wanted.abs()) {
+                                fell.push((of.name.clone(), t));
+                            }
+                        }
                         machine_beyond(v, of, torque, speed).for_each(&mut note);
                         if of.efficiency.at(torque, speed).1 && left.iter().all(|(name, _)| *name != of.name) {
                             left.push((of.name.clone(), t));
@@ -368,7 +379,7 @@ impl Engine {
                 }
             }
         }
-        (self.beyond, self.left_maps) = (beyond, left);
+        (self.beyond, self.left_maps, self.fell_short) = (beyond, left, fell);
     }
 
     /// Energy in what gives way in variators, J.

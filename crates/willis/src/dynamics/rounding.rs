@@ -1,4 +1,4 @@
-//! Zeros that rounding hides.
+//! Zeros that rounding hides, and numbers without its traces.
 
 /// Round-off of a margin of a step of fixed length, relative to the sum of amounts.
 pub(super) const NOISE: f64 = 1e-11;
@@ -10,4 +10,9 @@ pub(super) const NOISE: f64 = 1e-11;
 #[inline]
 pub(super) fn unless_rounding(sum: f64, amounts: f64) -> f64 {
     if sum.abs() <= 64.0 * f64::EPSILON * amounts { 0.0 } else { sum }
+}
+
+/// A number for a sentence: six decimals at most, or seven digits where it is small.
+pub(super) fn short(x: f64) -> f64 {
+    if x.abs() >= 0.01 { (x * 1e6).round() / 1e6 } else { format!("{x:.6e}").parse().unwrap_or(x) }
 }

@@ -14,11 +14,12 @@ use crate::train::{MemberId, Train};
 
 use super::choose::Trouble;
 use super::engine::Engine;
-use super::event::{Why, event, short};
+use super::event::{Why, event};
 use super::handles::{InputHandle, InputInfo, InputRefused, OutputHandle};
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
 use super::margins::{Margin, NOISE};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
+use super::rounding::short;
 use super::start::{AS_WRITTEN, initial_state};
 use super::stretch::Watch;
 use super::system::System;
@@ -806,6 +807,12 @@ impl Simulation {
         for (machine, t) in &self.engine.left_maps {
             notes.push(format!(
                 "{machine} runs outside the map of its efficiency, at {t} s for the first time; the value at its edge was taken"
+            ));
+        }
+        for (machine, t) in &self.engine.fell_short {
+            notes.push(format!(
+                "{machine} balances its bus and comes to its limit of torque, at {t} s for the first time: below the speed at which \
+                 that would be passed its torque falls with the speed, and the store gives or takes the rest"
             ));
         }
         RunReport {

@@ -6,8 +6,8 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, apart};
 use crate::train::MemberId;
 
 use super::engine::Engine;
-use super::event::short;
 use super::integrator::Smooth;
+use super::rounding::short;
 
 /// Difference between speeds, relative to them, up to which they are the same number written down: what the program
 /// prints it takes back.

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 use crate::losses::{self, FAMILIES};
-use crate::train::{Document, Key, Measure, MemberId};
+use crate::train::{Document, Key, Measure, MemberId, Train};
 use crate::units::{self, Dimension, Quantity};
 
 use super::Model;
@@ -41,6 +41,31 @@ pub enum Target {
     Law(&'static str),
     /// A key of the train file.
     File(Key),
+}
+
+/// The shaft of a name in `asked`: a role where it is one, else a member.
+///
+/// # Errors
+/// A name that is a role and that of another member: their signs differ, so neither is taken.
+pub(crate) fn shaft(train: &Train, who: &str, asked: &str) -> Result<Option<ShaftRef>, Box<Diagnostic>> {
+    let member = train.member(who);
+    let (role, end) = match who {
+        "input" => (ShaftRef::Input, train.input),
+        "output" => (ShaftRef::Output, train.output),
+        _ => return Ok(member.map(ShaftRef::Member)),
+    };
+    match (member, end) {
+        (Some(member), None) => Ok(Some(ShaftRef::Member(member))),
+        (Some(member), Some(end)) if member != end => {
+            let message = format!(
+                "`{asked}` has two meanings: the member called `{who}`, and the {who} of the train, which is `{}`",
+                train.member_name(end)
+            );
+            let d = Diagnostic::new(Code::DuplicateName, "", message);
+            Err(Box::new(d.hint(format!("call the member `{who}` something else"))))
+        }
+        _ => Ok(Some(role)),
+    }
 }
 
 impl Target {
@@ -97,18 +122,14 @@ impl Target {
             return Ok(Self::Law(family));
         }
         if let Some((who, what)) = name.rsplit_once('.')
-            && let Some(who) = match who {
-                "input" => Some(ShaftRef::Input),
-                "output" => Some(ShaftRef::Output),
-                _ => train.member(who).map(ShaftRef::Member),
-            }
+            && matches!(what, "speed" | "torque" | "power")
+            && let Some(who) = shaft(train, who, name)?
         {
-            match what {
-                "speed" => return Ok(Self::Speed(who)),
-                "torque" => return Ok(Self::Torque(who)),
-                "power" => return Ok(Self::Power(who)),
-                _ => {}
-            }
+            return Ok(match what {
+                "speed" => Self::Speed(who),
+                "torque" => Self::Torque(who),
+                _ => Self::Power(who),
+            });
         }
         model.document().find(name).map(Self::File).map_err(|mut d| {
             // All but the frame, whose speed nobody sets.

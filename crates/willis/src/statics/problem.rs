@@ -144,7 +144,9 @@ impl<'t> Problem<'t> {
     ) -> Result<Self, Unposed> {
         let c = &configuration;
         let speeds: Vec<_> = speeds.iter().map(|(m, w)| (*m, w.0.clone())).collect();
-        let motion = c.motion(&speeds).map_err(Unposed::Contradiction)?;
+        let motion = c
+            .motion(&speeds)
+            .map_err(|broken| Unposed::Contradiction(broken.into_iter().map(|d| d.members).collect()))?;
         let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
         let mut open: Vec<MemberId> = Vec::new();
         for m in c.train.terminals.iter().filter(|m| c.node(**m).is_some() && !loaded.contains(m)) {

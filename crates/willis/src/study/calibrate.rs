@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::assumptions;
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::model::{Model, ShaftRef, Target};
+use crate::model::{Model, ShaftRef, Target, shaft};
 use crate::train::csv::{self, Row};
 use crate::train::{LossPart, MemberId, Operation, Slot, Train};
 use crate::units::{self, Dimension};
@@ -471,10 +471,15 @@ fn offsets(train: &Train, given: &[(String, f64)]) -> Result<Vec<(MemberId, f64)
     let mut wrong = Diagnostics::default();
     let mut all = vec![];
     for (name, sd) in given {
-        let member = match name.as_str() {
-            "input" => train.input(),
-            "output" => train.output(),
-            name => train.member(name),
+        let member = match shaft(train, name, name) {
+            Ok(Some(ShaftRef::Input)) => train.input(),
+            Ok(Some(ShaftRef::Output)) => train.output(),
+            Ok(Some(ShaftRef::Member(m))) => Some(m),
+            Ok(None) => None,
+            Err(d) => {
+                wrong.push(*d);
+                continue;
+            }
         };
         match member {
             None => {

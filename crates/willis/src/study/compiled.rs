@@ -13,7 +13,7 @@ use crate::compiled::{
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
 use crate::model::{ShaftRef, Target};
-use crate::train::{Load, MemberId};
+use crate::train::{Load, MemberId, ShiftElement, ShiftElementKind};
 use crate::units::{self, Dimension};
 
 use super::answer::{PointAnswer, PointVerdict};
@@ -318,6 +318,11 @@ impl<'s> CompiledSweep<'s> {
                 "this train has a variator, whose torques depend on the speeds; it cannot be compiled",
                 with_hold,
             ));
+        }
+        let one_way = |e: &&ShiftElement| e.kind == ShiftElementKind::OneWay;
+        if let Some(e) = sweep.question.model().train().shift_elements().iter().find(one_way) {
+            let message = format!("`{}` is a one-way clutch: what it allows is looked at point by point", e.name);
+            return Err(refuse(&message, with_hold));
         }
         if let Some(a) = axes.iter().find(|a| {
             matches!(

@@ -79,6 +79,11 @@ pub struct Statistics {
     pub sampling_error: SamplingError,
 }
 
+impl Statistics {
+    /// Values that differ by no more than this part are the same: an operating point is no more exact.
+    pub const SAME: f64 = 1e-9;
+}
+
 /// How far a statistic may be off because the samples are finitely many: half the width of its 95 % confidence interval,
 /// `t s/√R` with the standard deviation s of the statistic over the R replicates (L'Ecuyer et al., 2023).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

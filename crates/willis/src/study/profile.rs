@@ -456,7 +456,9 @@ impl Profile {
                 Err(mut d) => {
                     d.place = place;
                     let hint = match d.code {
-                        Code::UnknownName if !told => "or leave the column out: name it in `ignore_column`",
+                        Code::UnknownName if !told => {
+                            "or leave the column out; `cycle` does where it stands in `ignore_column`"
+                        }
                         _ => "",
                     };
                     told |= !hint.is_empty();

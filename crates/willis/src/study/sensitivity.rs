@@ -32,6 +32,8 @@ use lanes::{Asked, LANES, Moved};
 const WORTH_TELLING: f64 = 1e-3;
 /// Derivatives of the loss below this part of it for a step are none.
 const NO_EFFECT: f64 = 1e-13;
+/// A balance of derivatives that closes no better than this part is none.
+const NOT_CLOSED: f64 = 1e-6;
 
 /// What every input does to efficiency and losses: the results contract `willis-sensitivity-1`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -452,7 +454,15 @@ fn of_operation(
             all.without_derivative.push(without(&why));
             continue;
         }
-        checks.balance_residual = checks.balance_residual.max(found.residual());
+        let size = NO_EFFECT * found.input.re.abs().max(found.loss.re.abs());
+        // Of a quantity that moves nothing there is only rounding.
+        let residual = if (found.steepest() * quantity.step().1).abs() > size { found.residual() } else { 0.0 };
+        if residual > NOT_CLOSED {
+            let why = "it loads what carries nothing here, and that loses whichever way it is loaded";
+            all.without_derivative.push(without(why));
+            continue;
+        }
+        checks.balance_residual = checks.balance_residual.max(residual);
         checks.rounds = checks.rounds.max(found.rounds);
         checks.error = checks.error.max(found.error);
         let oil = following.as_ref().map(|f| f.follow(&quantity.slots, &mut found));

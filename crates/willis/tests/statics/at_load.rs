@@ -111,14 +111,15 @@ fn a_load_may_be_asked_for() {
         (None, Some(0.0), None),
         (Some(0.0), None, None),
         (Some(1000.0), Some(-5.0), None),
-        (Some(-1000.0), Some(5.0), None),
+        (Some(-1000.0), Some(-5.0), None),
+        (None, Some(-5.0), None),
         (None, None, Some(900.0)),
     ] {
         assert!(ask(&train, speed, torque, celsius).is_err(), "{speed:?} {torque:?} {celsius:?}");
     }
     assert_eq!(ask(&train, Some(0.0), Some(0.0), Some(900.0)).unwrap_err().iter().count(), 3);
     // The other way round it drives as well: what is not asked for follows.
-    for (speed, torque) in [(Some(-1000.0), None), (None, Some(-5.0)), (Some(-1000.0), Some(-5.0))] {
+    for (speed, torque) in [(Some(-1000.0), None), (Some(-1000.0), Some(5.0))] {
         let table = ask(&train, speed, torque, None).expect("a table");
         let at = table.states.0[0].1.at_load.clone().expect("a load");
         assert!(at.speed_rad_s < 0.0 && at.torque_n_m < 0.0 && at.efficiency.expect("it drives") > 0.8, "{at:?}");
@@ -269,4 +270,32 @@ fn warnings_of_the_operation_are_told_once() {
     for text in &at.warnings {
         assert!(all.diagnostics.iter().any(|d| d.message.ends_with(text)), "{text}");
     }
+}
+
+/// A torque drives whichever way the input turns, as everywhere: without loss that depends on the direction the gears cost
+/// the same both ways.
+#[test]
+fn a_positive_torque_drives_in_both_directions() {
+    let mut compared = 0;
+    for (name, text) in examples() {
+        let Ok(train) = Train::from_toml(&text) else { continue };
+        let at = |rpm: f64| {
+            let (speed, torque) = (Some(AngularSpeed::rpm(rpm).into()), Some(Torque::n_m(50.0).into()));
+            let load = Some(AskedLoad { speed, torque, temperature: None });
+            shaft_table(&train, &ShaftTableRequest { load, ..Default::default() }).ok()
+        };
+        let (Some(forward), Some(backward)) = (at(900.0), at(-900.0)) else { continue };
+        for ((state, a), (_, b)) in forward.states.iter().zip(backward.states.iter()) {
+            let (Some(a), Some(b)) = (&a.at_load, &b.at_load) else { continue };
+            compared += 1;
+            assert_eq!([a.torque_n_m, b.torque_n_m], [50.0, -50.0], "{name} {state}");
+            assert_eq!(a.speed_rad_s, -b.speed_rad_s, "{name} {state}");
+        }
+        let load = Some(AskedLoad { torque: Some(Torque::n_m(-50.0).into()), ..AskedLoad::default() });
+        let wrong = shaft_table(&train, &ShaftTableRequest { load, ..Default::default() });
+        let told = wrong.err().is_some_and(|wrong| wrong.to_string().contains("brakes it"));
+        let some = forward.states.iter().any(|(_, s)| s.at_load.is_some());
+        assert!(told || !some, "{name}");
+    }
+    assert!(compared >= 6, "{compared}");
 }

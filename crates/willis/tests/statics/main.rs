@@ -10,6 +10,7 @@ mod degenerate;
 mod echo;
 mod flow;
 mod loads;
+mod one_way;
 mod operating_point;
 mod properties;
 mod speeds;

@@ -1,6 +1,6 @@
 //! Speeds that are prescribed more than once: the same to the last digit that a text has, measured, or contradictory.
 
-use willis::analysis::{OperationReport, Verdict, operate};
+use willis::analysis::{OperationReport, Selection, Verdict, analyze, operate};
 use willis::diagnostic::Code;
 use willis::exact::Rational;
 use willis::train::{MemberId, Operation, Train};
@@ -79,4 +79,33 @@ fn a_tolerance_is_a_small_part() {
         assert!(train.clone().with_speed_tolerance(wrong).unwrap_err().to_string().contains("from 0 to 0.1"));
     }
     assert_eq!(train.clone().with_speed_tolerance(0.0).unwrap().speed_tolerance(), Train::SAME_SPEED);
+}
+
+/// The part that a contradiction is said to have is that with which the tolerance is compared.
+#[test]
+fn the_part_that_is_told_is_enough_of_a_tolerance() {
+    let mut told = 0;
+    for k in 1..40 {
+        let carrier = 1600.0 + 0.1 * f64::from(k * k);
+        let text = format!(
+            r#"
+            format = 1
+            name = "measured"
+            members = ["sun", "ring", "carrier"]
+            terminals = ["sun", "ring", "carrier"]
+            set = [{{ name = "P1", sun = {{ member = "sun", teeth = 30 }}, ring = {{ member = "ring", teeth = 70 }}, carrier = "carrier" }}]
+            operation = [{{ name = "o", speeds = {{ sun = "3000 rpm", ring = "1000 rpm", carrier = "{carrier} rpm" }}, torques = {{ sun = "1 N m" }} }}]
+            "#
+        );
+        let train = Train::from_toml(&text).unwrap();
+        let wrong = analyze(&train, &Selection::default()).unwrap_err().iter().next().unwrap().clone();
+        let Some(hint) = wrong.hints.iter().find_map(|h| h.split_once("contradict the gears by ")) else { continue };
+        let part = hint.1.split(' ').next().unwrap().parse::<f64>().unwrap() / 100.0;
+        told += 1;
+        // Two or three digits are told.
+        let with =
+            |tolerance: f64| analyze(&train.clone().with_speed_tolerance(tolerance).unwrap(), &Selection::default());
+        assert!(with((1.06 * part).min(0.1)).is_ok() && with(0.94 * part).is_err(), "{carrier}: {part}");
+    }
+    assert!(told > 35, "{told}");
 }

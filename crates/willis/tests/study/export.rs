@@ -443,12 +443,22 @@ fn a_modelica_model_takes_the_efficiencies_of_an_operation() {
 fn models_of_every_example_are_read_by_a_parser() {
     let mut count = 0;
     for (name, _) in examples() {
-        parsed(&made(&train(&name), "modelica", &ExportRequest::default()).files[0].text);
+        let text = made(&train(&name), "modelica", &ExportRequest::default()).files[0].text.clone();
+        parsed(&text);
+        // A name is declared once.
+        let parts = text.lines().filter(|l| l.starts_with("  Modelica."));
+        let mut declared: Vec<&str> =
+            parts.filter_map(|l| l.split_whitespace().nth(1)?.split(['(', ';']).next()).collect();
+        assert!(declared.len() > 2, "{name}: {text}");
+        declared.sort_unstable();
+        assert!(declared.windows(2).all(|two| two[0] != two[1]), "{name}: {declared:?}");
         count += 1;
     }
     assert!(count > 30);
     let galvagno = made(&train("galvagno"), "modelica", &ExportRequest::default()).files[0].text.clone();
     assert!(galvagno.contains("Inertia inertia_ring(J=0.008)"), "{galvagno}");
+    // 0.006 of the carrier itself, and 0.00195075 of the masses of its planets.
+    assert!(galvagno.contains("Inertia inertia_carrier(J=0.00795075)"), "{galvagno}");
     let lossy = made(&train("lossy-gear"), "modelica", &ExportRequest::default()).files[0].text.clone();
     assert!(
         lossy.contains("[0, 0.9, 0.88, 0.3, 0.35; 50, 0.95, 0.94, 0.2, 0.2; 300, 0.97, 0.96, 0.25, 0.25]"),

@@ -599,3 +599,70 @@ fn shifts_move_so_that_a_given_centre_distance_holds() {
     assert_eq!(shifts.len(), 2);
     assert!(shifts.iter().all(|q| q.opposite.is_empty() && q.together.is_empty()));
 }
+
+/// Where a mesh carries nothing, whatever loads it loses either way: such a quantity has no derivative, and all others have
+/// the same one from both sides. Of every train of the examples with nothing at its terminals but drags.
+#[test]
+fn no_derivative_where_both_sides_differ() {
+    let text = r#"
+        format = 1
+        name = "spin"
+        members = ["sun", "carrier", "out"]
+        terminals = ["sun", "out"]
+        set = [{ name = "P1", sun = { member = "sun", teeth = 30 }, planet = { teeth = 20, count = 4 },
+                 ring = { member = "frame", teeth = 70 }, carrier = "carrier", mesh_efficiency = 0.9 }]
+        mesh = [{ name = "m", gears = [{ member = "carrier", teeth = 20 }, { member = "out", teeth = 30 }], efficiency = 0.97 }]
+        drag = [{ name = "v", members = ["AT"], coulomb = "2 N m" }]
+        operation = [{ name = "spin", speeds = { sun = "500 rpm" }, torques = { out = "0 N m" } }]
+    "#;
+    // Up to the drag all is loaded, behind it nothing.
+    for (at, corners) in [("sun", vec!["out.torque"]), ("carrier", vec!["out.torque"]), ("out", vec![])] {
+        let text = text.replace("AT", at);
+        let all = all_of(&text);
+        let o = &all.operations[0];
+        let without: Vec<&str> = o.without_derivative.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(without, corners, "{at}: {o:?}");
+        assert!(o.checks.is_some_and(|c| c.balance_residual < 1e-9), "{o:?}");
+        let loss = |torque: f64| analysed(&edited(&text, "spin", "out.torque", torque, "N m"), "spin").1;
+        let [down, here, up] = [-1e-3, 0.0, 1e-3].map(loss);
+        let sides = [(here - down) / 1e-3, (up - here) / 1e-3];
+        let own = o.quantities.iter().find(|q| q.name == "out.torque").map(|q| q.loss_derivative_w);
+        match own {
+            Some(slope) => {
+                assert!(sides.iter().all(|side| (side - slope).abs() < 1e-5 * slope.abs()), "{at}: {sides:?}")
+            }
+            None => assert!((sides[0] - sides[1]).abs() > 0.1, "{at}: {sides:?}"),
+        }
+        assert_eq!(own.is_none(), !corners.is_empty());
+    }
+}
+
+/// Derivatives of every operation close the balance of powers, with nothing at the terminals too.
+#[test]
+fn every_derivative_closes_the_balance() {
+    let mut closed = 0;
+    for (name, text) in examples() {
+        let Ok(train) = Train::from_toml(&text) else { continue };
+        for unloaded in [false, true] {
+            let mut text = text.clone();
+            for o in train.operations().iter().filter(|_| unloaded) {
+                for (member, _) in &o.loads {
+                    let path = format!("{}.torque", train.member_name(*member));
+                    if Document::parse(&text).is_ok_and(|d| {
+                        d.find(&format!("operation.{}.torques.{}", o.name, train.member_name(*member))).is_ok()
+                    }) {
+                        text = edited(&text, &o.name, &path, 0.0, "N m");
+                    }
+                }
+            }
+            let Ok(train) = Train::from_toml(&text) else { continue };
+            let Ok(all) = sensitivity(&train, &Selection::default()) else { continue };
+            for o in all.operations.iter().filter(|o| !o.quantities.is_empty()) {
+                closed += 1;
+                let checks = o.checks.expect("there are derivatives");
+                assert!(checks.balance_residual < 1e-6, "{name} {}, unloaded {unloaded}: {checks:?}", o.name);
+            }
+        }
+    }
+    assert!(closed > 20, "{closed}");
+}

@@ -317,6 +317,16 @@ fn formula_quantiles_of_one_set() {
     assert_eq!(u.verdicts[&PointVerdict::Unique], 1024);
 }
 
+/// A quantity on which nothing depends leaves no sample below the value as written but by rounding.
+#[test]
+fn rounding_is_no_difference() {
+    let u = found(ONE_SET, &["s.torque=37 N m..41.3 N m"], 256, 3);
+    let o = u.output("efficiency").expect("an efficiency");
+    let s = o.statistics.expect("all are answered");
+    assert!(s.most - s.least < Statistics::SAME, "{s:?}");
+    assert_eq!(o.below_nominal, Some(0.5), "{o:?}");
+}
+
 /// Of speed, torque and efficiency, the efficiency answers for the efficiency, and the torque for the loss.
 #[test]
 fn what_dominates_is_found() {

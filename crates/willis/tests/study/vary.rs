@@ -4,9 +4,10 @@
 use std::sync::Arc;
 
 use willis::analysis;
+use willis::diagnostic::Code;
 use willis::losses;
 use willis::model::{Model, Target};
-use willis::study::{Hold, PointAnswer, PointAnswers, PointSetup, TrainCache};
+use willis::study::{Axis, Hold, PointAnswer, PointAnswers, PointSetup, TrainCache};
 use willis::train::{Measure, Operation, Train};
 
 use crate::common::examples;
@@ -167,4 +168,38 @@ fn a_train_given_other_numbers_is_a_new_one() {
         assert_eq!(k, 200);
     }
     assert!(compared > 500, "{compared}");
+}
+
+/// A member called `output` that is not the output of its train: neither is taken for the other.
+#[test]
+fn a_role_and_a_member_of_that_name_are_not_mixed_up() {
+    let text = |terminals: &str| {
+        format!(
+            r#"
+            format = 1
+            name = "pair"
+            members = ["input", "output", "third"]
+            terminals = {terminals}
+            mesh = [{{ gears = [{{ member = "input", teeth = 20 }}, {{ member = "output", teeth = 40 }}] }},
+                    {{ gears = [{{ member = "output", teeth = 20 }}, {{ member = "third", teeth = 40 }}] }}]
+            "#
+        )
+    };
+    for (terminals, good) in [
+        (r#"["input", "output"]"#, [true, true]),
+        (r#"["output", "input"]"#, [false, false]),
+        (r#"["input", "third"]"#, [true, false]),
+        (r#"["third", "output"]"#, [false, true]),
+    ] {
+        let model = Model::from_toml(&text(terminals)).unwrap_or_else(|wrong| panic!("{wrong}"));
+        for (name, good) in ["input", "output"].into_iter().zip(good) {
+            for (what, values) in [("speed", "10..20 rpm:2"), ("torque", "1..2 N m:2"), ("power", "1..2 kW:2")] {
+                let axis = Axis::parse(&format!("{name}.{what}={values}"), &model);
+                assert_eq!(axis.is_ok(), good, "{terminals} {name}.{what}");
+                let told = axis.err().map(|d| (d.code, d.message.contains("two meanings")));
+                assert!(told.is_none_or(|told| told == (Code::DuplicateName, true)));
+            }
+        }
+        assert!(Axis::parse("third.torque=1..2 N m:2", &model).is_ok());
+    }
 }

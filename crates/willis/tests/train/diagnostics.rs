@@ -479,6 +479,9 @@ cases! {
     regress_e202_same_shaft: MissingTorque,
         and(&with(TWO_SPEED, "[\"sun\", \"ring\"]\n\n[[state]]", "[\"sun\", \"carrier\"]\n\n[[state]]"), "[[operation]]\nname = \"o\"\nstate = \"high\"\nspeeds = { sun = \"1000 rpm\" }");
 
+    regress_e202_a_freedom_without_a_terminal: MissingTorque,
+        and(&with(TWO_SPEED, "members = [\"sun\", \"ring\", \"carrier\"]", "members = [\"sun\", \"ring\", \"carrier\", \"loose\"]"), "[[operation]]\nname = \"o\"\nstate = \"high\"\nspeeds = { sun = \"1000 rpm\", loose = \"3 rpm\" }");
+
     // E203 TooManyTorques
     regress_e203_both: TooManyTorques, with(PAIR, "{ a = \"1 N m\" }", "{ a = \"1 N m\", b = \"-2 N m\" }");
 
@@ -583,6 +586,8 @@ cases! {
     regress_e101_law: UnknownName, and(TOOTHED, "[laws]\nmesh_friction = \"schlenck\"");
     regress_e101_oil: UnknownName, with(TOOTHED, "ISO VG 220", "ISO VG 221");
     regress_e101_bearing: UnknownName, and(TOOTHED, "[[bearing]]\nname = \"b\"\nmembers = [\"sun\"]\ndesignation = \"62010\"");
+    regress_e107_planets_of_two_sets: ShiftElement,
+        and(TOOTHED, "[[set]]\nname = \"P2\"\nsun = { member = \"sun\", teeth = 30 }\nplanet = { teeth = 20, count = 2 }\nring = { member = \"frame\", teeth = 70 }\ncarrier = \"carrier\"\n\n[[drag]]\nname = \"d\"\nmembers = [\"P1.planet\", \"P2.planet\"]\ncoulomb = \"1 N m\"");
     regress_e107_bearing: ShiftElement, and(TOOTHED, "[[bearing]]\nname = \"b\"\nmembers = []\ndesignation = \"6210\"");
     regress_e109_oil_twice: Conflict, with(TOOTHED, "temperature =", "viscosity_40 = \"220 mm^2/s\"\ntemperature =");
 

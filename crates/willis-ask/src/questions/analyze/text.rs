@@ -455,7 +455,7 @@ pub fn margins(margin: &Margin) -> String {
         ));
     }
     if let Some(f) = margin.lock_loss_factor {
-        lines.push(format!("locks when all losses grow {} times", significant(f, 4)));
+        lines.push(format!("locks when the loss of each set grows {} times", significant(f, 4)));
     }
     let text: String =
         lines.iter().enumerate().map(|(k, l)| format!("  {:<12} {l}\n", if k == 0 { "margin" } else { "" })).collect();

@@ -23,7 +23,7 @@ pub fn text(a: &DesignAnswer) -> String {
     let mut out = format!("{}\n{}\n\n", bold(&a.name), dim(&wrap(&a.wish, "  ")));
     let mut t = table();
     set_header(&mut t, &["condition", "trains left", "with every number of planets"]);
-    t.add_row(["candidates".to_owned(), count(a.space.candidates), String::new()]);
+    t.add_row(["candidates".to_owned(), String::new(), count(a.space.candidates)]);
     for s in &a.waterfall {
         let by: Vec<String> = s.by_planets.iter().map(|(n, k)| format!("{n}: {}", count(*k as f64))).collect();
         let by = if by.len() > 1 { format!("   ({})", by.join(", ")) } else { String::new() };

@@ -2,7 +2,9 @@
 
 use comfy_table::CellAlignment;
 use willis::diagnostic::Code;
-use willis::study::{PointVerdict, UncertainResult, UncertainValue, Uncertainty, WarningCount, WarningKind};
+use willis::study::{
+    PointVerdict, Statistics, UncertainResult, UncertainValue, Uncertainty, WarningCount, WarningKind,
+};
 
 use crate::style::{bar, bold, dim, right, set_header, show, significant, table, wrap};
 
@@ -120,7 +122,8 @@ fn sentence(o: &UncertainResult) -> String {
     let Some(s) = &o.statistics else {
         return format!("{name}: {written}; too few samples have an answer to tell its distribution");
     };
-    if s.least == s.most {
+    // What rounding makes is no difference.
+    if s.most - s.least <= Statistics::SAME * s.most.abs().max(s.least.abs()) {
         return format!("{name}: {written}; no sample differs");
     }
     let below = o.below_nominal.map_or(String::new(), |b| {

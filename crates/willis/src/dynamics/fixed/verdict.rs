@@ -1,9 +1,9 @@
 //! When a run cannot go on.
 
 use crate::dynamics::decision::Verdict;
-use crate::dynamics::event::short;
 use crate::dynamics::mode::dot;
 use crate::dynamics::report::Outcome;
+use crate::dynamics::rounding::short;
 use crate::dynamics::source::out_of_domain;
 use crate::train::MemberId;
 

@@ -14,6 +14,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::dynamics::rounding::short;
 use crate::train::{
     Control, ControlKind, Curve, FRAME, Machine, MemberId, Scenario, SourceKind, Store, Train, Variator, VariatorPath,
 };
@@ -246,7 +247,7 @@ impl Paths {
             PathKind::Geared(g) => Some(format!(
                 "{}: it follows its ratio within {} s, as a spring of {:.2e} N m/rad and a damper of {:.2e} N m s/rad do",
                 name(path),
-                settles(scenario),
+                short(settles(scenario)),
                 g.stiffness,
                 g.damping
             )),

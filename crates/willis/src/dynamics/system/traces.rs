@@ -16,6 +16,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::dynamics::rounding::short;
 use crate::exact::{Matrix, Rational, null_space};
 use crate::train::{Curve, MemberId, Scenario, Train};
 
@@ -103,7 +104,11 @@ impl Traces {
     pub fn assumption(&self, train: &Train) -> Option<String> {
         let names: Vec<&str> = self.given.iter().map(|(m, _)| train.member_name(*m)).collect();
         (!names.is_empty()).then(|| {
-            format!("without inertia, following what acts on them within {} s: {}", self.settles, names.join(", "))
+            format!(
+                "without inertia, following what acts on them within {} s: {}",
+                short(self.settles),
+                names.join(", ")
+            )
         })
     }
 

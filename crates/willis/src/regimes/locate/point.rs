@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
-use crate::kinematics::{Configuration, Motion, common};
+use crate::kinematics::{Configuration, Deviation, Motion, common};
 use crate::regimes::SelectedConfiguration;
 use crate::regimes::arrangement::dot;
 use crate::regimes::setup::{Linked, Setup};
@@ -83,10 +83,10 @@ fn refuse(code: Code, text: impl Into<String>, hint: &str) -> Diagnostics {
 }
 
 /// Speeds that the gears tie to each other and that do not agree.
-fn contradictory(c: &Configuration<'_>, groups: &[Vec<MemberId>]) -> Diagnostics {
+fn contradictory(c: &Configuration<'_>, broken: &[Deviation]) -> Diagnostics {
     let mut all = Diagnostics::default();
-    for group in groups {
-        let names: Vec<&str> = group.iter().map(|m| c.train.member_name(*m)).collect();
+    for Deviation { members, .. } in broken {
+        let names: Vec<&str> = members.iter().map(|m| c.train.member_name(*m)).collect();
         let text = format!("the speeds given for {} contradict each other: the gears tie them", names.join(", "));
         let hint = format!("give as many independent speeds as there are freedoms ({})", c.degrees_of_freedom());
         all.push(Diagnostic::new(Code::ContradictorySpeeds, "", text).hint(hint));

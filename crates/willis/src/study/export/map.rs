@@ -3,7 +3,7 @@
 use crate::analysis::{
     Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate, operate_unnamed,
 };
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::train::{AS_DRAWN, Load, MemberId, Operation, Train};
@@ -163,14 +163,14 @@ impl Gear {
             temperature,
             place: String::new(),
         };
-        let (report, notes) =
+        let (report, _) =
             operate_unnamed(&self.train, &operation).map_err(|wrong| crate::analysis::named(&operation, wrong))?;
-        self.read(report, &notes, &mut point);
+        self.read(report, &mut point);
         Ok(point)
     }
 
     /// Takes the answer from a report: the only equilibrium, or the only one in which a load is driven.
-    fn read(&self, report: OperationReport, notes: &Diagnostics, point: &mut Point) {
+    fn read(&self, report: OperationReport, point: &mut Point) {
         point.verdict = report.verdict;
         point.reason = report.reason;
         let several = report.solutions.len();
@@ -187,12 +187,6 @@ impl Gear {
             point.reason = Some(format!(
                 "of {several} equilibria this is the one that drives a load; in the others everything is dissipated"
             ));
-        }
-        // A one-way clutch that would have to hold against its free direction carries nothing.
-        if let Some(d) = notes.iter().find(|d| d.code == Code::OneWay && d.severity == Severity::Warning) {
-            point.verdict = Verdict::Undetermined;
-            point.reason = Some(d.message.clone());
-            return;
         }
         let Some(solution) = chosen else { return };
         let torque = solution.members.get(&self.output).and_then(|m| m.torque_n_m);

@@ -190,15 +190,24 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
             }
         }
     }
+    let mut inertias: Vec<(MemberId, f64)> = vec![];
     for i in train.inertias().iter().filter(|i| i.value > 0.0) {
-        let name = &train.members()[i.member.index()].name;
         if i.reference != FRAME {
+            let name = train.member_name(i.member);
             notes.push(format!("left out: the inertia of {name}, which counts its spin against its carrier"));
             continue;
         }
-        let at = node(i.member);
+        // A carrier has its own and that of the masses of its planets.
+        match inertias.iter_mut().find(|(m, _)| *m == i.member) {
+            Some((_, sum)) => *sum += i.value,
+            None => inertias.push((i.member, i.value)),
+        }
+    }
+    for (member, value) in inertias {
+        let at = node(member);
         let own = at.trim_start_matches("node_").to_owned();
-        parts += &format!("  {ROTATIONAL}.Components.Inertia inertia_{own}(J={}) {};\n", number(i.value), string(name));
+        let about = string(train.member_name(member));
+        parts += &format!("  {ROTATIONAL}.Components.Inertia inertia_{own}(J={}) {about};\n", number(value));
         connect(format!("inertia_{own}.flange_a"), at);
     }
     let shafts = identifiers(train.shafts().iter().map(|s| s.name.as_str()), &[]);

@@ -45,9 +45,15 @@ impl Powers {
         self.loss.eps.is_finite() && self.sources.iter().all(|s| s.3.eps.is_finite())
     }
 
-    /// Derivative of input less output less losses over that of the largest of them: zero up to round-off.
+    /// The largest derivative of a power.
+    pub fn steepest(&self) -> f64 {
+        self.input.eps.abs().max(self.output.eps.abs()).max(self.loss.eps.abs())
+    }
+
+    /// Derivative of input less output less losses over that of the largest of them: zero up to round-off, but where a quantity
+    /// loads what carries nothing here. That loses whichever way it is loaded, so losses have a corner there, and no slope.
     pub fn residual(&self) -> f64 {
-        let size = self.input.eps.abs().max(self.output.eps.abs()).max(self.loss.eps.abs());
+        let size = self.steepest();
         let left = self.input.eps - self.output.eps - self.loss.eps;
         if size == 0.0 { 0.0 } else { (left / size).abs() }
     }

@@ -206,8 +206,9 @@ impl UncertaintyPlan<'_> {
                 let samples = column.iter().enumerate().filter(|(k, _)| self.design.is_sample(*k));
                 let (mut below, mut same) = (0, 0);
                 for (_, v) in samples {
-                    below += usize::from(*v < nominal);
-                    same += usize::from(*v == nominal);
+                    let is_same = (v - nominal).abs() <= Statistics::SAME * nominal.abs();
+                    same += usize::from(is_same);
+                    below += usize::from(*v < nominal && !is_same);
                 }
                 (below as f64 + 0.5 * same as f64) / s.answered as f64
             });

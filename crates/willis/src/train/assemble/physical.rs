@@ -715,6 +715,20 @@ impl Assembler<'_> {
             self.report(Diagnostic::new(Code::ShiftElement, place, message).hint("name the two members it joins"));
             return None;
         }
+        let set = |m: MemberId| {
+            let mesh = self.meshes.iter().find(|x| x.gears.iter().any(|g| g.member == m));
+            mesh.filter(|_| self.members[m.0].kind == MemberKind::Planet).and_then(|x| x.set)
+        };
+        if let [Some(a), Some(b)] = members.map(set)
+            && a != b
+        {
+            let message = format!("`{}` and `{}` are planets of different sets", clip(&names[0]), clip(&names[1]));
+            let hint = format!(
+                "they do not turn side by side: a {what} joins a planet to its carrier or to another of its set"
+            );
+            self.report(Diagnostic::new(Code::ShiftElement, place, message).hint(hint));
+            return None;
+        }
         Some(members)
     }
 

@@ -86,6 +86,11 @@ const OF_ONE: [(&str, Unary); 26] = [
     ("log10", Unary::Log10),
 ];
 
+/// All functions by name.
+fn functions() -> String {
+    OF_ONE.iter().map(|(name, _)| *name).chain(OF_TWO.iter().map(|(name, _)| *name)).collect::<Vec<_>>().join(", ")
+}
+
 const CONSTANTS: [(&str, f64); 6] = [("PI", PI), ("π", PI), ("E", E), ("e", E), ("TAU", TAU), ("τ", TAU)];
 
 fn named<T: Copy>(of: &[(&str, T)], name: &str) -> Option<T> {
@@ -177,6 +182,10 @@ impl Expression {
         if let Some(token) = parser.next() {
             return Err(match token {
                 ")" => "there is a `)` without a `(`".to_owned(),
+                "(" => match tokens[..parser.at].iter().rev().nth(1).filter(|t| t.starts_with(char::is_alphabetic)) {
+                    Some(name) => format!("there is no function `{name}`; there are {}", functions()),
+                    None => "an operator is missing before `(`".to_owned(),
+                },
                 token => format!("an operator is missing before `{token}`"),
             });
         }
