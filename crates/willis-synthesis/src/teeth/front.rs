@@ -144,7 +144,9 @@ mod tests {
             exact.iter().map(|p| p.iter().map(|x| x + (random(9) as f64 - 4.0) * f64::EPSILON).collect()).collect();
         let keys = |points: &[Vec<f64>]| {
             let mut front = Front::default();
-            points.iter().enumerate().for_each(|(k, p)| drop(front.offer(p.clone(), k)));
+            for (k, p) in points.iter().enumerate() {
+                front.offer(p.clone(), k);
+            }
             front.into_sorted().into_iter().map(|(_, key)| key).collect::<Vec<usize>>()
         };
         assert_eq!(keys(&exact), keys(&jitter));

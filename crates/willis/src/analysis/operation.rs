@@ -6,7 +6,7 @@ use crate::kinematics::{Configuration, Coupled, Deviation, Motion};
 use crate::operating_point::{Physics, Step};
 use crate::power_flow::Known;
 use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
-use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
+use crate::train::{MemberId, MeshId, Operation, ShiftElement, ShiftElementId, ShiftElementKind, Train};
 
 use super::balance::{Balance, Branch, Setting};
 use super::loads::Loads;
@@ -408,14 +408,14 @@ fn held_back(train: &Train, s: &SolutionReport) -> Vec<Why> {
 /// One-way clutches that are open and turn the way they block.
 pub(super) fn turned_back(c: &Configuration<'_>, motion: &Motion) -> Vec<Why> {
     let train = c.train;
-    let open = (0..train.shift_elements.len()).map(ShiftElementId).filter(|e| !c.engaged.contains(e));
-    let turns = |id: ShiftElementId| {
-        let element = &train.shift_elements[id.0];
+    let one_way = train.shift_elements.iter().enumerate().filter(|(_, e)| e.kind == ShiftElementKind::OneWay);
+    let open = one_way.filter(|(k, _)| !c.engaged.contains(&ShiftElementId(*k)));
+    let turns = |(_, element): (usize, &ShiftElement)| {
         let [Some(a), Some(b)] = element.members.map(|m| motion.si(m)) else { return None };
         let blocked = (a - b) * f64::from(element.blocks);
         // What is prescribed in few digits may leave a trace of a speed that is zero.
         let is_some = blocked > train.speed_tolerance * a.abs().max(b.abs());
-        (element.kind == ShiftElementKind::OneWay && is_some).then(|| Why::WouldLock {
+        is_some.then(|| Why::WouldLock {
             clutch: element.name.clone(),
             members: element.members.map(|m| train.member_name(m).to_owned()),
             speed_rad_s: a - b,
