@@ -396,10 +396,13 @@ fn point<'t>(c: &Configuration<'t>, motion: &Motion, branch: &Branch<'_>) -> Poi
 /// One-way clutches that would have to hold against their free direction.
 fn held_back(train: &Train, s: &SolutionReport) -> Vec<Why> {
     let one_way = s.shift_elements.iter().filter(|(_, e)| e.kind == ShiftElementKind::OneWay);
+    // What is left of the torques beside it, which agree to 1e-9, is none.
+    let meshes = s.meshes.iter().flat_map(|(_, m)| [m.first_torque_n_m, m.second_torque_n_m, m.carrier_torque_n_m]);
+    let most = s.members.iter().filter_map(|(_, m)| m.torque_n_m).chain(meshes).fold(0.0, |a: f64, t| a.max(t.abs()));
     one_way
         .filter_map(|(name, e)| {
             let element = train.shift_elements.iter().find(|x| x.name == *name)?;
-            let torque_n_m = e.torque_n_m.filter(|t| t * f64::from(element.blocks) > 0.0)?;
+            let torque_n_m = e.torque_n_m.filter(|t| t * f64::from(element.blocks) > 1e-9 * most)?;
             Some(Why::CannotHold { clutch: name.clone(), member: e.members[0].clone(), torque_n_m })
         })
         .collect()
