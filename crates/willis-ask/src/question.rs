@@ -449,11 +449,13 @@ impl<Q: Question, B: Borrow<Q>, T: AsRef<[Given]>> Answer for Answered<(B, Phant
                 d
             })
         });
-        let mut all: Vec<Diagnostic> = all.collect();
         // A train may be given twice.
-        let mut seen = std::collections::HashSet::new();
-        all.retain(|d| seen.insert((d.code, d.message.clone())));
-        all
+        all.fold(vec![], |mut kept: Vec<Diagnostic>, d| {
+            if !kept.iter().any(|k| k.code == d.code && k.message == d.message) {
+                kept.push(d);
+            }
+            kept
+        })
     }
 
     fn is_partial(&self) -> bool {

@@ -128,9 +128,18 @@ impl Hash for Polynomial {
 }
 
 impl FromIterator<(Monomial, Rational)> for Polynomial {
+    /// The library of a browser has a limit: there terms are put in one by one, without a way to sort them.
+    #[cfg(target_arch = "wasm32")]
+    fn from_iter<I: IntoIterator<Item = (Monomial, Rational)>>(terms: I) -> Self {
+        let mut all = Self::default();
+        terms.into_iter().for_each(|(m, c)| all.add_term(m, c));
+        all
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
     fn from_iter<I: IntoIterator<Item = (Monomial, Rational)>>(terms: I) -> Self {
         let mut all: Terms = terms.into_iter().collect();
-        all.sort_by(|a, b| a.0.cmp(&b.0));
+        all.sort_unstable_by(|a, b| a.0.cmp(&b.0));
         all.dedup_by(|next, kept| {
             let same = next.0 == kept.0;
             if same {
@@ -633,18 +642,43 @@ polynomial_operator!(Mul, mul, |a, b| {
 /// The entries of a column of a matrix that are not zero, with their rows.
 pub(crate) type Entries<'p> = Vec<(usize, &'p Polynomial)>;
 
+/// What was made of polynomials, each once.
+#[derive(Debug)]
+pub(crate) struct Known<T> {
+    places: HashMap<Polynomial, usize>,
+    values: Vec<T>,
+}
+
+impl<T> Default for Known<T> {
+    fn default() -> Self {
+        Self { places: HashMap::new(), values: vec![] }
+    }
+}
+
+impl<T> Known<T> {
+    /// What is made of a polynomial.
+    pub fn of(&mut self, p: &Polynomial, make: impl FnOnce(&Polynomial) -> T) -> &T {
+        let place = self.places.get(p).copied().unwrap_or_else(|| {
+            self.values.push(make(p));
+            self.places.insert(p.clone(), self.values.len() - 1);
+            self.values.len() - 1
+        });
+        &self.values[place]
+    }
+}
+
 /// Determinants of square matrices of polynomials as products. Matrices that differ in a row or column share most of their
 /// blocks, whose factors are found once.
 #[derive(Debug)]
 pub(crate) struct Determinants {
     /// Most terms of a minor.
     most: usize,
-    factored: HashMap<Polynomial, RationalFunction>,
+    factored: Known<RationalFunction>,
 }
 
 impl Determinants {
     pub fn new(most: usize) -> Self {
-        Self { most, factored: HashMap::new() }
+        Self { most, factored: Known::default() }
     }
 
     /// The determinant of a matrix: in block triangular form it is the product of those of the diagonal blocks. `None` when
@@ -659,10 +693,7 @@ impl Determinants {
             let inside = |c: &usize| columns[*c].iter().filter_map(|(r, p)| Some((row_in[*r]?, *p))).collect();
             let columns: Vec<Entries<'_>> = block.columns.iter().map(inside).collect();
             let expanded = expanded(&columns, self.most)?;
-            own.push(match self.factored.get(&expanded) {
-                Some(known) => known.clone(),
-                None => self.factored.entry(expanded).or_insert_with_key(Polynomial::to_function).clone(),
-            });
+            own.push(self.factored.of(&expanded, Polynomial::to_function).clone());
             block.rows.iter().for_each(|&row| row_in[row] = None);
         }
         Some(RationalFunction::product(own))

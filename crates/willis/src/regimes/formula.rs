@@ -7,11 +7,11 @@
 //! moves. For one degree of freedom this is the rule `η = i(x)/i` of virtual work.
 
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::exact::Rational;
-use crate::symbolic::{Determinants, Entries, Notation, Polynomial, RationalFunction, Symbol};
+use crate::symbolic::{Determinants, Entries, Known, Notation, Polynomial, RationalFunction, Symbol};
 use crate::train::{MemberId, MeshId};
 
 use super::hub::Hubs;
@@ -176,11 +176,11 @@ impl Names {
 
     /// What writes many functions, whose factors are mostly the same.
     pub fn writer(&self, notation: Notation) -> impl FnMut(&RationalFunction) -> String {
-        let mut known: HashMap<(Polynomial, bool), String> = HashMap::new();
+        let mut known = [Known::default(), Known::default()];
         move |f| {
             notation.function_of(f, &mut |p, flipped| {
-                let write = || notation.polynomial(p, &|s| self.written(notation, s), flipped);
-                known.entry((p.clone(), flipped)).or_insert_with(write).clone()
+                let write = |p: &Polynomial| notation.polynomial(p, &|s| self.written(notation, s), flipped);
+                known[usize::from(flipped)].of(p, write).clone()
             })
         }
     }
@@ -738,14 +738,8 @@ impl<'s, 't> Shape<'s, 't> {
         let known = self.driven.borrow().get(pattern).cloned();
         known.unwrap_or_else(|| {
             // Many functions are made of the same few factors.
-            let mut known: HashMap<Polynomial, Option<RationalFunction>> = HashMap::new();
-            let mut factor = |p: &Polynomial| match known.get(p) {
-                Some(own) => own.clone(),
-                None => {
-                    let own = p.substituted(&|s| self.x_value(pattern, s));
-                    known.entry(p.clone()).or_insert(own).clone()
-                }
-            };
+            let mut known = Known::default();
+            let mut factor = |p: &Polynomial| known.of(p, |p| p.substituted(&|s| self.x_value(pattern, s))).clone();
             let mut here = |f: &RationalFunction| f.with_factors(&mut factor).expect("x has no poles of its own");
             let mut all =
                 |rows: &[Vec<RationalFunction>]| rows.iter().map(|r| r.iter().map(&mut here).collect()).collect();
