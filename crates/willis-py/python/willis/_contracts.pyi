@@ -922,7 +922,7 @@ class AnalyzeMargin(Record):
         """The mesh (or set) whose efficiency is nearest to the value at which the train locks."""
     @property
     def lock_loss_factor(self) -> float | None:
-        """The factor on all losses ``1 − η`` at which the train locks."""
+        """The factor on all losses ``1 − η`` of basic efficiencies, those of whole sets, at which the train locks."""
 
 class AnalyzeTorque(Record):
     @property
@@ -2764,7 +2764,7 @@ class SensitivityMargin(Record):
         """The mesh (or set) whose efficiency is nearest to the value at which the train locks."""
     @property
     def lock_loss_factor(self) -> float | None:
-        """The factor on all losses ``1 − η`` at which the train locks."""
+        """The factor on all losses ``1 − η`` of basic efficiencies, those of whole sets, at which the train locks."""
 
 class SensitivityChecks(Record):
     """How far derivatives are settled."""
