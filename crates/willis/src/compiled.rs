@@ -79,7 +79,8 @@ enum Column {
 }
 
 impl Train {
-    /// Compiles the train for what is prescribed and wanted.
+    /// Compiles the train for what is prescribed and wanted. What one-way clutches allow is not looked at: those that are
+    /// engaged are closed, the others open, as `state` says.
     ///
     /// # Errors
     /// Names that do not exist, speeds that do not determine the motion or contradict each other,

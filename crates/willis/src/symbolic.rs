@@ -128,27 +128,29 @@ impl Hash for Polynomial {
 }
 
 impl FromIterator<(Monomial, Rational)> for Polynomial {
-    /// The library of a browser has a limit: there terms are put in one by one, without a way to sort them.
-    #[cfg(target_arch = "wasm32")]
     fn from_iter<I: IntoIterator<Item = (Monomial, Rational)>>(terms: I) -> Self {
-        let mut all = Self::default();
-        terms.into_iter().for_each(|(m, c)| all.add_term(m, c));
-        all
-    }
-
-    #[cfg(not(target_arch = "wasm32"))]
-    fn from_iter<I: IntoIterator<Item = (Monomial, Rational)>>(terms: I) -> Self {
-        let mut all: Terms = terms.into_iter().collect();
-        all.sort_unstable_by(|a, b| a.0.cmp(&b.0));
-        all.dedup_by(|next, kept| {
-            let same = next.0 == kept.0;
-            if same {
-                kept.1 = &kept.1 + &next.1;
-            }
-            same
-        });
-        all.retain(|(_, c)| !c.is_zero());
+        let mut all = Terms::new();
+        terms.into_iter().for_each(|(m, c)| add_term(&mut all, m, c));
         Self(Arc::new(all))
+    }
+}
+
+/// Adds a term in its place; many come in order.
+fn add_term(terms: &mut Terms, m: Monomial, c: Rational) {
+    if c.is_zero() {
+        return;
+    }
+    if terms.last().is_none_or(|last| last.0 < m) {
+        return terms.push((m, c));
+    }
+    match terms.binary_search_by(|own| own.0.cmp(&m)) {
+        Err(at) => terms.insert(at, (m, c)),
+        Ok(at) => {
+            terms[at].1 = &terms[at].1 + &c;
+            if terms[at].1.is_zero() {
+                terms.remove(at);
+            }
+        }
     }
 }
 
@@ -175,22 +177,6 @@ impl Polynomial {
 
     fn numbers(&self) -> impl Iterator<Item = &Rational> {
         self.0.iter().map(|own| &own.1)
-    }
-
-    fn add_term(&mut self, m: Monomial, c: Rational) {
-        if c.is_zero() {
-            return;
-        }
-        let terms = Arc::make_mut(&mut self.0);
-        match terms.binary_search_by(|own| own.0.cmp(&m)) {
-            Err(at) => terms.insert(at, (m, c)),
-            Ok(at) => {
-                terms[at].1 = &terms[at].1 + &c;
-                if terms[at].1.is_zero() {
-                    terms.remove(at);
-                }
-            }
-        }
     }
 
     /// Whether this is zero.
@@ -301,16 +287,18 @@ impl Polynomial {
     /// The quotient, when the division leaves no remainder.
     fn divided(&self, by: &Self) -> Option<Self> {
         let (lead, lead_c) = by.0.last()?;
-        let mut rest = self.clone();
-        let mut quotient = Self::default();
-        while let Some((m, c)) = rest.0.last() {
+        let mut rest = Terms::clone(&self.0);
+        // The greatest term comes first.
+        let mut quotient = Terms::new();
+        while let Some((m, c)) = rest.last() {
             let (m, c) = (m.over(lead)?, c / lead_c);
             for (bm, bc) in by.0.iter() {
-                rest.add_term(m.times(bm), -(&c * bc));
+                add_term(&mut rest, m.times(bm), -(&c * bc));
             }
-            quotient.add_term(m, c);
+            quotient.push((m, c));
         }
-        Some(quotient)
+        quotient.reverse();
+        Some(Self(Arc::new(quotient)))
     }
 
     /// The content with respect to a symbol: the greatest common divisor of its coefficients.

@@ -225,13 +225,22 @@ pub(super) fn settle_at<'t>(
         locks: c.degrees_of_freedom() == 1 && !driven.unwrap_or_else(|| all.iter().any(|s| !s.all_dissipated)),
     };
     let (mut verdict, mut whys) = case.verdict(&all);
-    // What a one-way clutch does not allow is no answer, however well it balances.
-    let held_back: Vec<Vec<Why>> = all.iter().map(|s| held_back(train, s)).collect();
-    let impossible = !turned.is_empty() || !held_back.is_empty() && held_back.iter().all(|own| !own.is_empty());
-    if impossible && verdict != Verdict::Locked {
-        verdict = Verdict::Undetermined;
+    // What a one-way clutch does not allow is no answer, however well it balances. Where all are allowed but some equilibria,
+    // that is told beside the reason.
+    if verdict == Verdict::Locked {
+        whys.extend(turned);
+    } else {
+        let held: Vec<Vec<Why>> = all.iter().map(|s| held_back(train, s)).collect();
+        let none_left = !held.is_empty() && held.iter().all(|own| !own.is_empty());
+        let impossible = !turned.is_empty() || none_left;
+        let against = turned.into_iter().chain(held.into_iter().flatten());
+        if impossible {
+            verdict = Verdict::Undetermined;
+            whys.splice(..0, against);
+        } else {
+            whys.extend(against);
+        }
     }
-    whys.splice(..0, turned.into_iter().chain(held_back.into_iter().flatten()));
     let mut report = OperationReport { verdict, certificate: Some(certificate.into()), ..report };
     whys.first().into_iter().for_each(|why| report.explain(why));
     findings.extend(whys.into_iter().map(Finding::Why));

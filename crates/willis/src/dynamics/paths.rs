@@ -334,6 +334,18 @@ impl Engine {
         }
     }
 
+    /// Whether the machine that balances a bus does not, as it is at its limit of torque: the store gives something else than
+    /// it is to.
+    fn falls_short(&self, k: usize, store: &GivenStore, t: f64) -> bool {
+        let path = &self.system.paths[k];
+        let PathKind::Bus { machines, .. } = &path.kind else { return false };
+        let [wanted, gives] = [self.given_store(path, store, t), self.path_powers(k, t)[0]];
+        let sides = machines.iter().map(|m| self.machine_side(m, t));
+        let passed = sides.fold(wanted.abs(), |sum, s| sum + (s.torque * s.speed).abs());
+        // Far more than rounding, and far less than anybody would miss.
+        (gives - wanted).abs() > 1e-6 * passed
+    }
+
     /// Notes which limits of variators the state solved last exceeds, where that is more than before, and machines that
     /// leave their maps.
     pub(super) fn note_limits(&mut self, t: f64, x: &[f64]) {
@@ -364,12 +376,11 @@ impl Engine {
                 PathKind::Bus { machines, store, .. } => {
                     for (m, of) in machines.iter().zip(v.machines()) {
                         let PathSide { speed, torque } = self.machine_side(m, t);
-                        if matches!(m.does, MachineDoes::Balances(_)) && fell.iter().all(|(name, _)| *name != of.name) {
-                            let [wanted, gives] = [self.given_store(path, store, t), self.path_powers(k, t)[0]];
-                            // Far more than rounding, and far less than anybody would miss.
-                            if (gives - wanted).abs() > 1e-6 * gives.abs().max(wanted.abs()) {
-                                fell.push((of.name.clone(), t));
-                            }
+                        if matches!(m.does, MachineDoes::Balances(_))
+                            && fell.iter().all(|(name, _)| *name != of.name)
+                            && self.falls_short(k, store, t)
+                        {
+                            fell.push((of.name.clone(), t));
                         }
                         machine_beyond(v, of, torque, speed).for_each(&mut note);
                         if of.efficiency.at(torque, speed).1 && left.iter().all(|(name, _)| *name != of.name) {

@@ -806,13 +806,15 @@ impl Simulation {
         }
         for (machine, t) in &self.engine.left_maps {
             notes.push(format!(
-                "{machine} runs outside the map of its efficiency, at {t} s for the first time; the value at its edge was taken"
+                "{machine} runs outside the map of its efficiency, at {} s for the first time; the value at its edge was taken",
+                short(*t)
             ));
         }
         for (machine, t) in &self.engine.fell_short {
             notes.push(format!(
-                "{machine} balances its bus and comes to its limit of torque, at {t} s for the first time: below the speed at which \
-                 that would be passed its torque falls with the speed, and the store gives or takes the rest"
+                "{machine} balances its bus and comes to its limit of torque, at {} s for the first time: below the speed at which \
+                 that would be passed its torque falls with the speed, and the store gives or takes the rest",
+                short(*t)
             ));
         }
         RunReport {

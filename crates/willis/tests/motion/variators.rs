@@ -333,14 +333,18 @@ fn a_hybrid_accelerates_and_its_books_close() {
     }
     // Without a battery the second machine takes what the first gives, within its limit of torque.
     let rolling = |text: String| text.replace("ring = \"20 rad/s\"", "ring = \"100 rad/s\"");
-    let (rows, _) = run(&rolling(hybrid("", &format!("source = [{engine}, {control}]\n"))));
+    let comes_to_its_limit =
+        |notes: &[String]| notes.iter().any(|n| n.contains("B balances its bus and comes to its limit"));
+    let (rows, report) = run(&rolling(hybrid("", &format!("source = [{engine}, {control}]\n"))));
     assert!(rows.of("path.store_w").all(|p| p.abs() < 1e-6));
+    assert!(!comes_to_its_limit(&report.notes), "{:?}", report.notes);
     assert!(last(&rows, "B.torque_n_m") > 0.0);
     // With 5 kW from a battery in place of nothing.
-    let (rows, _) = run(&rolling(hybrid(
+    let (rows, report) = run(&rolling(hybrid(
         "",
         &format!("source = [{engine}, {control}]\nvariator = [{{ name = \"path\", store = \"5 kW\" }}]\n"),
     )));
+    assert!(!comes_to_its_limit(&report.notes), "{:?}", report.notes);
     assert!(rows.of("path.store_w").all(|p| (p - 5e3).abs() < 1e-6 * 5e3), "5 kW");
 }
 
@@ -353,7 +357,8 @@ fn the_machine_that_balances_is_bounded_at_standstill() {
          { member = \"ring\", torque = \"-30 N m\" }]\n",
     )
     .replace("ring = \"20 rad/s\"", "ring = \"0 rad/s\"");
-    let (rows, _) = run(&text);
+    let (rows, report) = run(&text);
+    assert!(report.notes.iter().any(|n| n.contains("B balances its bus and comes to its limit of torque, at 0 s")));
     assert!(rows.of("B.torque_n_m").all(|t| t.abs() <= 200.0 * (1.0 + 1e-12)));
     let store: Vec<f64> = rows.of("path.store_w").collect();
     assert!(store[0] < -1e3, "what A generates at the start goes into the store: {}", store[0]);
