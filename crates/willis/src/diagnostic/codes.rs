@@ -189,7 +189,7 @@ codes! {
     /// There is no efficiency to speak of.
     W311 AllDissipated: "all power is dissipated";
     /// A one-way clutch would have to transmit torque in the direction in which it runs free, or
-    /// turn in the direction that it blocks.
+    /// turn in the direction that it blocks. An operating point that asks for that is undetermined.
     W312 OneWay: "a one-way clutch cannot do that";
     /// The certificate failed and the train has too many interacting meshes to try every sign
     /// pattern, or more equilibria than are told; a solution that was found may not be the only one.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Ancestors, OperationReport, PointNumbers, PointSeries, SolutionReport, Told, Verdict};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Ratio};
 use crate::operating_point::LossSource;
@@ -170,10 +170,7 @@ impl PointAnswer {
         });
         // The notes tell of the laws outside their ranges in the order of these.
         let mut outside = outside.into_iter();
-        // What is the reason of the verdict is not told twice.
-        let is_own =
-            |d: &Diagnostic| d.code != Code::SelfLocking && (d.code != Code::OneWay || d.message != answer.reason);
-        let own = notes.into_iter().filter(|d| d.severity == Severity::Warning && is_own(d));
+        let own = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
         let own = own.map(|d| {
             let law = if d.code == Code::OutsideLaw { outside.next() } else { None };
             let law = law.map(|o| LawChoice { family: o.family, law: o.law });
