@@ -35,6 +35,7 @@ mod pairs;
 mod single;
 mod tables;
 
+use crate::arch::Arch;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Element};
@@ -62,7 +63,7 @@ pub struct CompiledTrain {
     single: Option<Single>,
     /// Whether a quotient of powers is asked for.
     divides: bool,
-    arch: pulp::Arch,
+    arch: Arch,
 }
 
 /// Where an output comes from.
@@ -442,7 +443,7 @@ impl<'t> Compiler<'t> {
             column_of,
             general,
             single,
-            arch: pulp::Arch::new(),
+            arch: Arch::new(),
         })
     }
 

@@ -119,6 +119,7 @@ pub mod real;
 pub mod units;
 pub mod named;
 pub mod contract;
+mod arch;
 pub mod work;
 pub mod diagnostic;
 pub mod catalogue;

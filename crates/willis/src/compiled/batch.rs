@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::arch::Arch;
+
 use super::duty::BatchInputs;
 use super::grid::{GridInputs, Layout, OutputSummary, PointValue};
 use super::kernel::{self, Chunk, SUMS};
@@ -469,13 +471,13 @@ impl CompiledTrain {
 
 impl OutputSummary {
     /// Takes in a block of values, those of the points from `first` on.
-    pub(crate) fn add_block(&mut self, arch: pulp::Arch, values: &[f64], first: usize) {
+    pub(crate) fn add_block(&mut self, arch: Arch, values: &[f64], first: usize) {
         let mut sums = [0.0; SUMS];
         self.take_in(arch, values, first, &mut sums);
         self.sum += sums.iter().sum::<f64>();
     }
 
-    fn take_in(&mut self, arch: pulp::Arch, values: &[f64], first: usize, sums: &mut [f64; SUMS]) {
+    fn take_in(&mut self, arch: Arch, values: &[f64], first: usize, sums: &mut [f64; SUMS]) {
         let least = self.min.map_or(f64::INFINITY, |m| m.value);
         let most = self.max.map_or(f64::NEG_INFINITY, |m| m.value);
         // Where an extreme is, is looked up only when it is one.

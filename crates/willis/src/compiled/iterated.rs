@@ -22,6 +22,8 @@
 
 use std::ops::Range;
 
+use crate::arch::Arch;
+
 use super::duty::PointVerdict;
 use super::parts::{CHUNK, Law, MOST_FEATURES, MOST_MOVING, Parts, Target};
 use super::passes::{combine, dot};
@@ -239,7 +241,7 @@ impl Iterated {
     #[expect(clippy::too_many_arguments, reason = "the parts of a workspace, borrowed apart")]
     pub fn chunk(
         &self,
-        arch: pulp::Arch,
+        arch: Arch,
         x: &[&[f64]],
         speeds: Range<usize>,
         range: Range<usize>,
@@ -271,7 +273,7 @@ impl Iterated {
     }
 
     /// Settles the points of a chunk; returns how many are not unique.
-    fn settle<const K: usize>(&self, arch: pulp::Arch, n: usize, w: &mut Lanes) -> usize {
+    fn settle<const K: usize>(&self, arch: Arch, n: usize, w: &mut Lanes) -> usize {
         let slots: &mut [Slot; K] = (&mut w.0[..]).try_into().expect("as many slots as elements");
         let system = &self.system::<K>();
         let (mut open, mut odd, mut round) = (n, 0, 0);

@@ -6,6 +6,8 @@
 
 use std::ops::Range;
 
+use crate::arch::Arch;
+
 use super::duty::PointVerdict;
 use super::iterated::{Iterated, Lanes};
 use super::pairs::{Fill, Line, Pair, Shared};
@@ -359,7 +361,7 @@ impl General {
     /// `to` says, the rest into the chunk's arrays.
     pub fn chunk(
         &self,
-        arch: pulp::Arch,
+        arch: Arch,
         given: &[&[f64]],
         range: Range<usize>,
         w: &mut Chunk,
@@ -413,7 +415,7 @@ impl General {
     /// Nothing where the chunk is not of that kind.
     fn in_pairs(
         &self,
-        arch: pulp::Arch,
+        arch: Arch,
         x: &[&[f64]],
         range: Range<usize>,
         w: &mut Chunk,
@@ -469,7 +471,7 @@ impl General {
     #[expect(clippy::too_many_arguments, reason = "those of a chunk, taken apart")]
     fn pairs<const F: usize>(
         &self,
-        arch: pulp::Arch,
+        arch: Arch,
         x: &[&[f64]],
         direction: f64,
         range: Range<usize>,
@@ -568,7 +570,7 @@ impl General {
     /// rows. `x` are the features; returns how many points are not unique.
     fn patterns(
         &self,
-        arch: pulp::Arch,
+        arch: Arch,
         x: &[&[f64]],
         range: Range<usize>,
         w: &mut Chunk,
@@ -857,15 +859,8 @@ lanes! {
 }
 
 /// `out = Σ a_k x_k` where `which` is `pattern`, `Σ b_k x_k` elsewhere.
-fn combine_two(arch: pulp::Arch, x: &[&[f64]], a: &[f64], b: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
-    fn go<const F: usize>(
-        arch: pulp::Arch,
-        x: &[&[f64]],
-        rows: [&[f64]; 2],
-        which: &[u64],
-        pattern: u64,
-        out: &mut [f64],
-    ) {
+fn combine_two(arch: Arch, x: &[&[f64]], a: &[f64], b: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
+    fn go<const F: usize>(arch: Arch, x: &[&[f64]], rows: [&[f64]; 2], which: &[u64], pattern: u64, out: &mut [f64]) {
         match (<[&[f64]; F]>::try_from(x), rows.map(<[f64; F]>::try_from)) {
             (Ok(x), [Ok(a), Ok(b)]) => arch.dispatch(CombineTwo { x, a, b, which, pattern, out }),
             _ => {
@@ -880,8 +875,8 @@ fn combine_two(arch: pulp::Arch, x: &[&[f64]], a: &[f64], b: &[f64], which: &[u6
 }
 
 /// The same, only where `which` is `pattern`.
-fn combine_where(arch: pulp::Arch, x: &[&[f64]], row: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
-    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
+fn combine_where(arch: Arch, x: &[&[f64]], row: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
+    fn go<const F: usize>(arch: Arch, x: &[&[f64]], row: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
         match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
             (Ok(x), Ok(row)) => arch.dispatch(CombineWhere { x, row, which, pattern, out }),
             _ => {
@@ -895,10 +890,10 @@ fn combine_where(arch: pulp::Arch, x: &[&[f64]], row: &[f64], which: &[u64], pat
 }
 
 /// `worst = min(worst, side · sigma · Σ row_k x_k)`, or that product alone for the first.
-fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, first: bool, worst: &mut [f64]) {
+fn fit(arch: Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, first: bool, worst: &mut [f64]) {
     #[rustfmt::skip]
     fn go<const F: usize>(
-        arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, first: bool, worst: &mut [f64],
+        arch: Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, first: bool, worst: &mut [f64],
     ) {
         match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
             (Ok(x), Ok(row)) => arch.dispatch(Fit { x, row, sigma, side, first, worst }),
@@ -934,16 +929,16 @@ fn add_one(
 pub(super) const SUMS: usize = 32;
 
 /// Adds to partial sums; the extremes of all, if a value is below `least` or above `most`.
-pub(super) fn add(arch: pulp::Arch, x: &[f64], sum: &mut [f64; SUMS], [least, most]: [f64; 2]) -> Option<[f64; 2]> {
+pub(super) fn add(arch: Arch, x: &[f64], sum: &mut [f64; SUMS], [least, most]: [f64; 2]) -> Option<[f64; 2]> {
     arch.dispatch(Add { x, sum, least, most })
 }
 
 /// Sum of a slice.
-pub(super) fn sum(arch: pulp::Arch, x: &[f64]) -> f64 {
+pub(super) fn sum(arch: Arch, x: &[f64]) -> f64 {
     arch.dispatch(Sum { x })
 }
 
 /// To single precision.
-pub(super) fn round(arch: pulp::Arch, x: &[f64], out: &mut [f32]) {
+pub(super) fn round(arch: Arch, x: &[f64], out: &mut [f32]) {
     arch.dispatch(Round { x, out });
 }

@@ -1,5 +1,7 @@
 //! What all passes over a chunk share: loops for each vector width, and sums of products.
 
+use crate::arch::Arch;
+
 /// Declares loops over lanes that are compiled for each vector width and chosen at run time. (A
 /// closure would do, but nothing forces it to be inlined into the function that has the width.)
 macro_rules! lanes {
@@ -78,14 +80,14 @@ lanes! {
 }
 
 /// Whether a number is too small for all digits of floating point.
-pub(super) fn is_tiny(arch: pulp::Arch, x: &[f64]) -> bool {
+pub(super) fn is_tiny(arch: Arch, x: &[f64]) -> bool {
     // Nearly never, so that a quick look at the exponents says it.
     arch.dispatch(LeastExponent { x }) == 0.0 && x.iter().any(|x| x.is_subnormal())
 }
 
 /// `out = Σ row_k x_k`.
-pub(super) fn combine(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
-    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
+pub(super) fn combine(arch: Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
+    fn go<const F: usize>(arch: Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
         let n = out.len();
         match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
             (Ok(x), Ok(row)) => arch.dispatch(Combine { x, row, out }),

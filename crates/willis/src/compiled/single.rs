@@ -4,6 +4,8 @@
 //! stretches. The signs at the ends of 64 points then hold between them: sums and products round monotonically. Such a
 //! stretch needs no comparison; the numbers are the same to the last bit.
 
+use crate::arch::Arch;
+
 use super::duty::ShaftDrag;
 use super::kernel::{General, LEAST_POWER};
 use super::parts::CHUNK;
@@ -256,7 +258,7 @@ impl Single {
         self.at::<LOADED>(whole(w0), whole(w1)).point(whole(torque))
     }
 
-    pub fn run(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], mut out: SingleOut<'_>) {
+    pub fn run(&self, arch: Arch, w0: &[f64], w1: &[f64], torque: &[f64], mut out: SingleOut<'_>) {
         if self.swapped {
             out.torque.swap(0, 1);
         }
@@ -267,7 +269,7 @@ impl Single {
         }
     }
 
-    fn go<const LOADED: usize>(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], out: SingleOut<'_>) {
+    fn go<const LOADED: usize>(&self, arch: Arch, w0: &[f64], w1: &[f64], torque: &[f64], out: SingleOut<'_>) {
         let SingleOut { torque: [first, second], loss, efficiency } = out;
         let set = self;
         match (first, second, loss, efficiency) {
@@ -295,7 +297,7 @@ impl Single {
     }
 
     /// Points at two speeds whose torques run up or down.
-    pub fn run_row(&self, arch: pulp::Arch, speeds: [f64; 2], torque: &[f64], mut out: SingleOut<'_>) {
+    pub fn run_row(&self, arch: Arch, speeds: [f64; 2], torque: &[f64], mut out: SingleOut<'_>) {
         if self.swapped {
             out.torque.swap(0, 1);
         }
@@ -326,7 +328,7 @@ impl<'o> SingleOut<'o> {
 }
 
 impl Row {
-    fn go(&self, arch: pulp::Arch, torque: &[f64], out: SingleOut<'_>) {
+    fn go(&self, arch: Arch, torque: &[f64], out: SingleOut<'_>) {
         let row = self;
         let SingleOut { torque: [first, second], loss, efficiency } = out;
         match (first, second, loss, efficiency) {

@@ -3,6 +3,7 @@
 //! Runs that are in the same mode share the affine map of its step ([`super::fused`]), so that a block of them is stepped by
 //! vector instructions. A run that leaves its mode takes that one step alone.
 
+use crate::arch::Arch;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{SourceKind, Train};
 
@@ -95,7 +96,7 @@ pub struct Batch {
     one: FixedStep,
     blocks: Vec<Block>,
     len: usize,
-    arch: pulp::Arch,
+    arch: Arch,
     /// Inputs that are not level, step by step, where all runs have the same.
     common: Vec<Option<f64>>,
     /// Steps of modes as blocks take them, in the order of the modes met; empty until one does.
@@ -133,7 +134,7 @@ impl Batch {
         Ok(Self {
             blocks: (0..runs.div_ceil(LANES)).map(|_| block()).collect(),
             len: runs,
-            arch: pulp::Arch::new(),
+            arch: Arch::new(),
             common: vec![],
             packed: vec![],
             room: Room::default(),

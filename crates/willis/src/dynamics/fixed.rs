@@ -27,6 +27,7 @@ mod verdict;
 
 use std::sync::Arc;
 
+use crate::arch::Arch;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::Train;
 
@@ -191,7 +192,7 @@ pub struct FixedStep {
     pub(super) least: Vec<f64>,
     pub(super) ends: Vec<f64>,
     keeps_angles: bool,
-    arch: pulp::Arch,
+    arch: Arch,
     /// Speeds, angles with integrals, signs and contacts at the start.
     at_start: (Vec<f64>, Vec<f64>, Vec<i8>, Vec<Touch>),
     /// Energies as the engine counts them; empty unless asked for.
@@ -361,7 +362,7 @@ impl FixedStep {
             least: vec![],
             ends: vec![],
             keeps_angles: true,
-            arch: pulp::Arch::new(),
+            arch: Arch::new(),
             energies: vec![],
             came_in: vec![],
             trail: Trail::default(),

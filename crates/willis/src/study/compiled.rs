@@ -7,6 +7,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use crate::arch::Arch;
 use crate::compiled::{
     BatchInputs, CompileRequest, CompiledOutput, CompiledTrain, GridInputs, OutputSummary, Workspace,
 };
@@ -137,7 +138,7 @@ pub struct CompiledSweep<'s> {
     columns: Vec<(Column, What)>,
     /// The output that each number column takes.
     output: Vec<Option<usize>>,
-    arch: pulp::Arch,
+    arch: Arch,
 }
 
 /// Work arrays; one for each thread.
@@ -356,7 +357,7 @@ impl<'s> CompiledSweep<'s> {
         let mut trains = TrainCache::default();
         let cases = (0..count).map(|case| sweep.case(case, &choosing, &outputs, &mut trains));
         let cases = cases.collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { sweep: Arc::clone(&sweep), cases, choosing, columns, output, arch: pulp::Arch::new() })
+        Ok(Self { sweep: Arc::clone(&sweep), cases, choosing, columns, output, arch: Arch::new() })
     }
 
     /// The columns of the rows.
