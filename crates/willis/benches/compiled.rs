@@ -70,6 +70,51 @@ fn power_split(outputs: &[CompiledOutput]) -> CompiledTrain {
     train.compile(&duty).unwrap()
 }
 
+/// Points a second, from the shortest of several times.
+fn fastest(points: usize, mut work: impl FnMut()) -> f64 {
+    let seconds = (0..9).map(|_| {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64()
+    });
+    points as f64 / seconds.fold(f64::INFINITY, f64::min)
+}
+
+/// Points whose inputs and results stay in the cache.
+const FEW: usize = 4096;
+
+/// What the machine allows a task that reads three arrays, in points a second: its own arithmetic in the cache, and reading
+/// and writing as many arrays with nothing but two additions.
+fn limits(
+    task: &str,
+    input: &BatchInputs<'_>,
+    out: &mut [&mut [f64]],
+    mut run: impl FnMut(&BatchInputs<'_>, &mut [&mut [f64]]),
+) {
+    const ROUNDS: usize = 200;
+    const BLOCK: usize = 512;
+    let given = [input.speeds[0], input.speeds[1], input.torques[0]];
+    let n = given[0].len();
+    let few = given.map(|x| &x[..n.min(FEW)]);
+    let (speeds, torques) = ([few[0], few[1]], [few[2]]);
+    let input = BatchInputs { speeds: &speeds, torques: &torques };
+    let cached = fastest(ROUNDS * few[0].len(), || {
+        let mut out: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..few[0].len()]).collect();
+        (0..ROUNDS).for_each(|_| run(black_box(&input), &mut out));
+    });
+    let streams = fastest(n, || {
+        for start in (0..n).step_by(BLOCK) {
+            let now = start..n.min(start + BLOCK);
+            let [a, b, c] = given.map(|x| &x[now.clone()]);
+            let mut sums = [0.0; BLOCK];
+            sums.iter_mut().zip(a).zip(b).zip(c).for_each(|(((s, a), b), c)| *s = a + b + c);
+            out.iter_mut().for_each(|o| o[now.clone()].copy_from_slice(&sums[..now.len()]));
+            black_box(&sums);
+        }
+    });
+    record(&format!("{task}-limits"), &[("cached", cached), ("streams", streams)], n);
+}
+
 fn map(c: &mut Criterion) {
     let n = points(10_000_000);
     let mut random = Xorshift::new();
@@ -95,7 +140,10 @@ fn map(c: &mut Criterion) {
     let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
     group.bench_function("map-all", |b| b.iter(|| all.evaluate_batch(&input, &mut work, &mut slices)));
     let names = ["torque_ring", "torque_carrier", "loss", "efficiency"];
-    record("map-all", &names.iter().zip(&out).map(|(k, o)| (*k, sum(o))).collect::<Vec<_>>(), n);
+    record("map-all", &names.iter().zip(&slices).map(|(k, o)| (*k, sum(o))).collect::<Vec<_>>(), n);
+    limits("map-all", &input, &mut slices, |few, out| {
+        black_box(all.evaluate_batch(few, &mut work, out));
+    });
 
     let efficiency = power_split(&[CompiledOutput::Efficiency]);
     let mut work = efficiency.workspace();
@@ -104,6 +152,9 @@ fn map(c: &mut Criterion) {
         b.iter(|| efficiency.evaluate_batch(&input, &mut work, &mut [&mut e[..]]));
     });
     record("map-efficiency", &[("efficiency", sum(e))], n);
+    limits("map-efficiency", &input, &mut [&mut e[..]], |few, out| {
+        black_box(efficiency.evaluate_batch(few, &mut work, out));
+    });
     let mut single = vec![0.5f32; n];
     group.bench_function("map-efficiency-f32", |b| {
         b.iter(|| efficiency.evaluate_batch_f32(&input, &mut work, &mut [&mut single[..]]));
@@ -111,6 +162,9 @@ fn map(c: &mut Criterion) {
     let mut sums = [0.0];
     group.bench_function("map-reduced", |b| b.iter(|| efficiency.sum_batch(&input, &mut work, black_box(&mut sums))));
     record("map-reduced", &[("efficiency", sums[0])], n);
+    limits("map-reduced", &input, &mut [], |few, _| {
+        black_box(efficiency.sum_batch(few, &mut work, &mut sums));
+    });
 
     // From a grid: nothing is read, and where a sum is wanted nothing is written.
     let axis = |low: f64, high: f64, n: usize| -> Vec<f64> {
@@ -240,22 +294,5 @@ fn gears(c: &mut Criterion) {
     group.finish();
 }
 
-/// Bytes a second that a copy of a long array reads and writes: the shortest of several, and how much longer the middle one
-/// took.
-fn memory(_: &mut Criterion) {
-    const BYTES: usize = 1 << 27;
-    let (from, mut to) = (vec![1u8; BYTES], vec![0u8; BYTES]);
-    let mut seconds: Vec<f64> = (0..9)
-        .map(|_| {
-            let start = Instant::now();
-            black_box(&mut to).copy_from_slice(black_box(&from));
-            start.elapsed().as_secs_f64()
-        })
-        .collect();
-    seconds.sort_by(f64::total_cmp);
-    let [bytes_per_s, spread] = [2.0 * BYTES as f64 / seconds[0], seconds[4] / seconds[0] - 1.0];
-    record("memory", &[("bytes_per_s", bytes_per_s), ("spread", spread)], 1);
-}
-
-criterion_group!(benches, memory, map, automatic, gears);
+criterion_group!(benches, map, automatic, gears);
 criterion_main!(benches);

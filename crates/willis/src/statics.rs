@@ -614,13 +614,21 @@ impl Equilibrium {
     }
 }
 
+/// What one unit of force in an element asks of a node: a constant, and what is multiplied by ρ.
+fn asked(c: &Configuration<'_>, element: usize, node: usize) -> [Rational; 2] {
+    let e = &c.elements[element];
+    let is_at = |member: MemberId| c.node(member) == Some(node);
+    [(e.p, &e.a), (e.q, &e.b)].map(|(end, x)| match (is_at(end), is_at(e.carrier)) {
+        (true, false) => x.clone(),
+        (false, true) => -x,
+        _ => Rational::ZERO,
+    })
+}
+
 /// What one unit of force in an element asks of a node, with ρ as given.
 fn coefficient(c: &Configuration<'_>, element: usize, rho: &Rational, node: usize) -> Rational {
-    let e = &c.elements[element];
-    let b = &e.b * rho;
-    let carrier = -(&e.a + &b);
-    let at = |(member, x): (MemberId, Rational)| if c.node(member) == Some(node) { x } else { Rational::ZERO };
-    [(e.p, e.a.clone()), (e.q, b), (e.carrier, carrier)].into_iter().map(at).fold(Rational::ZERO, |sum, x| sum + x)
+    let [constant, slope] = asked(c, element, node);
+    constant + &slope * rho
 }
 
 /// Torque that the elements ask of a node, from their forces.
@@ -776,8 +784,13 @@ fn rounding(rounded: &[f64]) -> Vec<f64> {
 
 /// Whether the coefficient of node `n` in element `j` is non-zero for every efficiency in the box.
 fn keeps_sign(c: &Configuration<'_>, j: usize, n: usize) -> bool {
+    let [constant, slope] = asked(c, j, n);
+    // Terms of one sign have no zero between them, as ρ is positive.
+    if constant.sign() * slope.sign() >= 0 {
+        return !(constant.is_zero() && slope.is_zero());
+    }
     let e = &c.elements[j];
-    let at = |rho: &Rational| coefficient(c, j, rho, n).sign();
+    let at = |rho: &Rational| (&constant + &(&slope * rho)).sign();
     let (low, high) = (at(&e.forward), at(&e.backward.recip()));
     low != 0 && low == high
 }

@@ -6,7 +6,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use serde_json::Value;
@@ -32,17 +32,21 @@ use Goal::{Least, Most, Times};
 #[derive(Clone, Copy)]
 enum Limit {
     Words(&'static str),
-    /// So many bytes of a point go through the memory.
-    Bytes(f64),
+    /// What the task itself measured: its arithmetic in the cache, and its arrays without arithmetic.
+    Measured(&'static str),
 }
-use Limit::{Bytes, Words};
+use Limit::Words;
 
 impl Limit {
-    /// In words; `bandwidth` of the memory in bytes a second.
-    fn told(self, bandwidth: f64) -> String {
+    fn told(self, results: &Results) -> Result<String, String> {
         match self {
-            Words(words) => words.to_owned(),
-            Bytes(bytes) => format!("{:.1e}: {bytes} bytes a point, {:.0} GB/s", bandwidth / bytes, bandwidth / 1e9),
+            Words(words) => Ok(words.to_owned()),
+            Limit::Measured(task) => {
+                let task = format!("{task}-limits");
+                let at =
+                    |key: &str| results.ours(&task)?["checksum"][key].as_f64().ok_or(format!("{task}: no `{key}`"));
+                Ok(format!("{:.1e} in the cache, {:.1e} its memory alone", at("cached")?, at("streams")?))
+            }
         }
     }
 }
@@ -51,17 +55,17 @@ impl Limit {
 type Asked = (&'static str, &'static str, Goal, Limit);
 
 /// Points, steps, or seconds of a scenario, in a second. A peer `task/program` is that of another task, whose points are
-/// others. Limits: the bandwidth of the memory, or the same arithmetic written in C for this case alone, with fused
+/// others. Limits: measured beside it, or the same arithmetic written in C for this case alone, with fused
 /// multiplication and sums in any order (measured in November 2026 on the machine of the figures in the README).
 const RATES: &[Asked] = &[
-    ("map-all", "numpy-whole-array", Times(10.0), Bytes(56.0)),
+    ("map-all", "numpy-whole-array", Times(10.0), Limit::Measured("map-all")),
     ("map-all", "numpy-blocked", Goal::None, Words("")),
     ("map-all", "numba-fused", Times(0.9), Words("5.0e8 in C")),
-    ("map-efficiency", "numpy-whole-array", Times(40.0), Bytes(32.0)),
+    ("map-efficiency", "numpy-whole-array", Times(40.0), Limit::Measured("map-efficiency")),
     ("map-efficiency", "numba-fused", Goal::None, Words("")),
-    ("map-efficiency-f32", "map-efficiency/numpy-whole-array", Goal::None, Bytes(28.0)),
-    ("map-reduced", "numpy-whole-array", Times(40.0), Bytes(24.0)),
-    ("map-reduced", "numba-fused", Times(1.0), Bytes(24.0)),
+    ("map-efficiency-f32", "map-efficiency/numpy-whole-array", Goal::None, Words("")),
+    ("map-reduced", "numpy-whole-array", Times(40.0), Limit::Measured("map-reduced")),
+    ("map-reduced", "numba-fused", Times(1.0), Words("sums in any order, fused multiplication")),
     ("map-grid-efficiency", "map-efficiency/numpy-whole-array", Times(100.0), Words("1.9e9 in C, single precision")),
     ("map-grid-reduced", "map-reduced/numba-fused", Times(2.0), Words("")),
     ("automatic-gear-1", "numpy-batched-solve", Times(200.0), Words("")),
@@ -209,6 +213,24 @@ impl Table {
     }
 }
 
+/// What is being done, and since when.
+#[derive(Default)]
+struct Stage(Option<(&'static str, Instant)>);
+
+impl Stage {
+    fn begins(&mut self, what: &'static str) {
+        self.ends();
+        println!("{what} …");
+        self.0 = Some((what, Instant::now()));
+    }
+
+    fn ends(&mut self) {
+        if let Some((what, since)) = self.0.take() {
+            println!("{what}: {:.0} s", since.elapsed().as_secs_f64());
+        }
+    }
+}
+
 /// Runs everything and prints the table. `Err` when a program failed or checksums differ.
 fn run(root: &Path) -> Result<(), String> {
     let started = Instant::now();
@@ -217,14 +239,15 @@ fn run(root: &Path) -> Result<(), String> {
     let checksums = folder.join("checksums.jsonl");
     let _ = fs::remove_file(&checksums);
     let python = python(root, &folder)?;
-    println!("building …");
+    let mut stage = Stage::default();
+    stage.begins("building");
     let benches = ["--bench", "compiled", "--bench", "motion", "--bench", "answers"];
     command(
         Command::new("cargo").current_dir(root).args(["bench", "-p", "willis", "--no-run", "--quiet"]).args(benches),
     )?;
     let program = ["build", "--profile", "dist", "--quiet", "-p", "willis-cli"];
     command(Command::new("cargo").current_dir(root).args(program))?;
-    println!("Willis …");
+    stage.begins("Willis");
     // Two seconds a task: the best of many short samples is what is kept.
     let criterion = ["--", "--noplot", "--quiet", "--warm-up-time", "0.5", "--measurement-time", "2"];
     let mut c = Command::new("cargo");
@@ -240,7 +263,7 @@ fn run(root: &Path) -> Result<(), String> {
         ("study.py", &[]),
     ];
     for (script, arguments) in scripts {
-        println!("{script} …");
+        stage.begins(script);
         let mut c = Command::new(&python);
         c.current_dir(root.join("benches/baselines")).args([script, "--json"]).args(arguments);
         c.env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1").env("PYTHONDONTWRITEBYTECODE", "1");
@@ -250,21 +273,21 @@ fn run(root: &Path) -> Result<(), String> {
         }
         peers.extend(lines(&String::from_utf8_lossy(&out.stdout))?);
     }
+    stage.begins("commands");
     let own = lines(&fs::read_to_string(&checksums).map_err(|e| e.to_string())?)?;
     let results = Results { root: root.to_owned(), own, peers };
 
-    let bandwidth = results.recorded("memory", "bytes_per_s")?.value;
     let mut table = Table::default();
     let mut wrong = Vec::new();
     println!();
     table.head();
     for &(task, peer, goal, limit) in RATES {
         let theirs = results.theirs(task, peer, true, &mut wrong)?;
-        table.row((task, peer), (theirs, results.rate(task)?), true, goal, &limit.told(bandwidth));
+        table.row((task, peer), (theirs, results.rate(task)?), true, goal, &limit.told(&results)?);
     }
     for &(task, peer, goal, limit) in ANSWERS {
         let theirs = results.theirs(task, peer, false, &mut wrong)?;
-        table.row((task, peer), (theirs, results.seconds(task)?), false, goal, &limit.told(bandwidth));
+        table.row((task, peer), (theirs, results.seconds(task)?), false, goal, &limit.told(&results)?);
     }
     for &(task, goal) in BATCHES {
         let ours = results.recorded(task, "ratio")?;
@@ -272,6 +295,7 @@ fn run(root: &Path) -> Result<(), String> {
         table.row((task, "one by one"), (Some(1.0), one), true, Times(goal), "");
     }
     commands(&results, &mut table, &mut wrong)?;
+    stage.ends();
     fs::write(folder.join("table.txt"), table.lines.join("\n") + "\n").map_err(|e| e.to_string())?;
     println!(
         "\n{} goals missed, {} rows unsteady; {:.0} s. Rates a second, answers in seconds, limits in C those of the \
@@ -407,6 +431,45 @@ fn timed(program: &Path, root: &Path, arguments: &[&str], runs: usize) -> Result
     Ok((Measured { value: all[0], spread: all[runs / 2] / all[0] - 1.0 }, told))
 }
 
+/// How many times as much two programs get done at once as one, the best of several runs: what a second thread could give
+/// on this machine, whose cores may share what they compute with.
+fn two_at_once(program: &Path, root: &Path, arguments: &[&str], one: f64, runs: usize) -> Result<f64, String> {
+    let mut least = f64::INFINITY;
+    for _ in 0..runs {
+        let started = Instant::now();
+        let start = || {
+            let quiet = (Stdio::null(), Stdio::null());
+            Command::new(program).current_dir(root).args(arguments).stdout(quiet.0).stderr(quiet.1).spawn()
+        };
+        let both = [start(), start()];
+        for child in both {
+            child.and_then(|mut child| child.wait()).map_err(|e| e.to_string())?;
+        }
+        least = least.min(started.elapsed().as_secs_f64());
+    }
+    Ok(2.0 * one / least)
+}
+
+/// How long the disk takes for files like these as the program keeps them: each whole there before it has its name, and
+/// its name too. Seconds, the best of several times.
+fn kept(folder: &Path, files: &[&Path]) -> std::io::Result<f64> {
+    let contents = files.iter().map(fs::read).collect::<std::io::Result<Vec<_>>>()?;
+    let [first, name] = ["unfinished", "finished"].map(|name| folder.join(name));
+    let mut least = f64::INFINITY;
+    for _ in 0..5 {
+        let started = Instant::now();
+        for content in &contents {
+            fs::write(&first, content)?;
+            fs::File::open(&first)?.sync_all()?;
+            fs::rename(&first, &name)?;
+            fs::File::open(folder)?.sync_all()?;
+        }
+        least = least.min(started.elapsed().as_secs_f64());
+    }
+    fs::remove_file(&name)?;
+    Ok(least)
+}
+
 /// Whole commands: wall time of the program.
 fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Result<(), String> {
     let root = &results.root;
@@ -416,9 +479,14 @@ fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Re
     let folder = root.join("target/willis-bench");
     let out = |name: &str| folder.join(name).to_string_lossy().into_owned();
     let on = |threads: &'static str| [&map[..], &[threads]].concat();
+    let at_once = |arguments: &[&str], one: Measured, runs: usize| {
+        two_at_once(&willis, root, arguments, one.value, runs)
+            .map(|times| format!("{times:.2} x: two programs at once"))
+    };
     let mut two = f64::NAN;
     for threads in ["1", "2"] {
         let (seconds, told) = run(&on(threads), 15)?;
+        let limit = if threads == "1" { at_once(&on("1"), seconds, 15)? } else { String::new() };
         let told: Value = serde_json::from_slice(&told).map_err(|e| e.to_string())?;
         let points = told["points"].as_f64().unwrap_or(f64::NAN);
         two = seconds.value;
@@ -438,7 +506,7 @@ fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Re
             let goal = if name == "numpy-whole-array" && threads == "2" { Times(20.0) } else { Goal::None };
             let ours = Measured { value: points / seconds.value, ..seconds };
             let what = format!("sweep of 1e7 points, {threads} threads");
-            table.row((&what, name), (peer["points_per_s"].as_f64(), ours), true, goal, "");
+            table.row((&what, name), (peer["points_per_s"].as_f64(), ours), true, goal, &limit);
         }
     }
     let table_file = out("map.parquet");
@@ -457,15 +525,17 @@ fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Re
     };
     let (one, _) = run(&physical(&["1"]), 5)?;
     let (both, _) = run(&physical(&["2"]), 5)?;
-    table.row(("physical map, two threads", "one thread"), (Some(one.value), both), false, Times(1.8), "2");
+    let limit = at_once(&physical(&["1"]), one, 5)?;
+    table.row(("physical map, two threads", "one thread"), (Some(one.value), both), false, Times(1.8), &limit);
     let file = out("physical.parquet");
     let (written, _) = run(&[&physical(&["1"])[..], &["--force", "--out", &file]].concat(), 5)?;
+    let waits = kept(&folder, &[Path::new(&file), Path::new(&format!("{file}.json"))]).map_err(|e| e.to_string())?;
     table.row(
         ("physical map, into Parquet", "without a table"),
         (Some(one.value), written),
         false,
         Times(1.0 / 1.3),
-        "1",
+        &format!("{waits:.3} s of it for the disk"),
     );
 
     let (analyzed, _) = run(&["analyze", "examples/zf-8hp70.toml"], 25)?;

@@ -237,7 +237,7 @@ fn direction(c: &Configuration<'_>, transfer: &Transfer, [from, to]: [MemberId; 
         };
     };
     let w_in = w_from.to_f64();
-    for s in &answer.solutions {
+    for s in answer.solutions.iter().filter(|_| has_one_way(c)) {
         let ends = [(from, torque(c, s, node_from)), (to, load)];
         if let Some(clutch) = overrunning(c, &demand(c, &s.forces, &s.rho), ends, forward) {
             return Direction::without(Verdict::Undetermined, Why::Overruns { clutch });
@@ -278,6 +278,10 @@ fn direction(c: &Configuration<'_>, transfer: &Transfer, [from, to]: [MemberId; 
         reason: why.as_ref().map(ToString::to_string),
         why,
     }
+}
+
+fn has_one_way(c: &Configuration<'_>) -> bool {
+    c.engaged.iter().any(|e| c.train.shift_elements[e.0].kind == ShiftElementKind::OneWay)
 }
 
 /// A one-way clutch that would have to hold against its free direction, if there is one.

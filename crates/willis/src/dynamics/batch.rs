@@ -3,6 +3,8 @@
 //! Runs that are in the same mode share the affine map of its step ([`super::fused`]), so that a block of them is stepped by
 //! vector instructions. A run that leaves its mode takes that one step alone.
 
+use std::ops::{Deref, DerefMut};
+
 use crate::arch::Arch;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{SourceKind, Train};
@@ -20,7 +22,31 @@ const LANES: usize = 8;
 /// Steps that a block takes before the next block takes as many: what it works on stays near.
 const STRETCH: u64 = 64;
 
-type Lanes = [f64; LANES];
+/// A number of each run of a block. A vector that begins anywhere lies in two lines of the cache, mostly.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Lanes([f64; LANES]);
+
+impl Deref for Lanes {
+    type Target = [f64; LANES];
+    #[inline(always)]
+    fn deref(&self) -> &[f64; LANES] {
+        &self.0
+    }
+}
+
+impl DerefMut for Lanes {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64; LANES] {
+        &mut self.0
+    }
+}
+
+impl Lanes {
+    fn of(x: f64) -> Self {
+        Self([x; LANES])
+    }
+}
 
 fn wrong(message: String) -> Diagnostics {
     Diagnostic::new(Code::UnknownName, "", message).into()
@@ -113,12 +139,12 @@ impl Batch {
     pub fn new(train: &Train, scenario: &str, h: f64, runs: usize) -> Result<Self, Diagnostics> {
         let mut one = FixedStep::new(train, scenario, h)?;
         one.without_angles();
-        let spread = |x: &[f64]| x.iter().map(|x| [*x; LANES]).collect::<Vec<Lanes>>();
+        let spread = |x: &[f64]| x.iter().map(|x| Lanes::of(*x)).collect::<Vec<Lanes>>();
         let block = || Block {
             v: spread(&one.v),
             rest: spread(&one.rest),
             inputs: spread(&one.inputs),
-            factors: vec![[1.0; LANES]; one.inputs.len()],
+            factors: vec![Lanes::of(1.0); one.inputs.len()],
             base: vec![],
             least: vec![],
             sign: one.sign.repeat(LANES),
@@ -126,7 +152,7 @@ impl Batch {
             touch: one.shafts.iter().map(|shaft| shaft.touch).collect::<Vec<_>>().repeat(LANES),
             present: [None; LANES],
             uniform: true,
-            bound: [0.0; LANES],
+            bound: Lanes::of(0.0),
             turns: [0; LANES],
             verdict: Default::default(),
             ended: 0,
@@ -301,32 +327,34 @@ impl Block {
 
     /// The speed or slip that an input may follow, in each run.
     #[inline(always)]
-    fn followed(&self, row: &[f64]) -> Lanes {
+    fn followed<S: pulp::Simd>(&self, simd: S, row: &[f64]) -> Lanes {
         // In the order of `dot`.
-        let (fours, rest) = (row.chunks_exact(4), row.chunks_exact(4).remainder());
-        let sum = |k: usize, row: &[f64]| {
-            let mut sum = [0.0; LANES];
-            for (x, v) in row.iter().step_by(4).zip(self.v[k..].iter().step_by(4)) {
-                (0..LANES).for_each(|lane| sum[lane] += x * v[lane]);
+        let (fours, rest) = row.as_chunks::<4>();
+        let (v, v_rest) = self.v.split_at(4 * fours.len());
+        let mut all = Lanes::of(0.0);
+        for (part, all) in S::as_mut_simd_f64s(&mut all.0).0.iter_mut().enumerate() {
+            let add = |sum, w: f64, v: &Lanes| {
+                simd.add_f64s(sum, simd.mul_f64s(simd.splat_f64s(w), S::as_simd_f64s(&v.0).0[part]))
+            };
+            let zero = simd.splat_f64s(0.0);
+            let last = rest.iter().zip(v_rest).fold(zero, |sum, (w, v)| add(sum, *w, v));
+            let mut sums = [zero; 4];
+            for (w, v) in fours.iter().zip(v.as_chunks::<4>().0) {
+                (0..4).for_each(|k| sums[k] = add(sums[k], w[k], &v[k]));
             }
-            sum
-        };
-        let mut last = [0.0; LANES];
-        for (x, v) in rest.iter().zip(&self.v[row.len() - rest.len()..]) {
-            (0..LANES).for_each(|lane| last[lane] += x * v[lane]);
+            let [a, b, c, d] = sums;
+            *all = match fours {
+                [] => last,
+                _ => simd.add_f64s(simd.add_f64s(simd.add_f64s(a, c), simd.add_f64s(b, d)), last),
+            };
         }
-        let whole = 4 * fours.len();
-        if whole == 0 {
-            return last;
-        }
-        let [a, b, c, d] = [0, 1, 2, 3].map(|k| sum(k, &row[k..whole]));
-        std::array::from_fn(|lane| (a[lane] + c[lane]) + (b[lane] + d[lane]) + last[lane])
+        all
     }
 
     /// An input that differs between runs, but for its factor.
     #[inline(always)]
-    fn inputs_at(&self, one: &mut FixedStep, k: usize, middle: f64) -> Lanes {
-        let w = self.followed(one.row_of_input(k));
+    fn inputs_at<S: pulp::Simd>(&self, simd: S, one: &mut FixedStep, k: usize, middle: f64) -> [f64; LANES] {
+        let w = self.followed(simd, one.row_of_input(k));
         match one.engine.system.scenario.sources.get(k).map(|source| &source.kind) {
             Some(SourceKind::Linear { torque, about, slope }) => w.map(|w| torque - slope * (w - about)),
             Some(SourceKind::Quadratic { torque, about, factor, even: true }) => {
@@ -336,7 +364,7 @@ impl Block {
                 w.map(|w| torque - factor * ((w - about) * (w - about).abs()))
             }
             _ => {
-                let integral = one.integral_of(k).map(|i| self.rest[i]).unwrap_or_default();
+                let integral = one.integral_of(k).map(|i| *self.rest[i]).unwrap_or_default();
                 let needs_all = one.needs_all_speeds(k);
                 std::array::from_fn(|lane| {
                     if needs_all {
@@ -399,7 +427,7 @@ impl Block {
         if one.present.is_some() {
             for (from, to) in [(&one.base, &mut self.base), (&one.least, &mut self.least)] {
                 if to.len() < from.len() {
-                    to.resize(from.len(), [0.0; LANES]);
+                    to.resize(from.len(), Lanes::of(0.0));
                 }
                 paste_lane(from, lane, to);
             }
@@ -510,7 +538,7 @@ impl Block {
             match common {
                 Some(value) => u.iter_mut().for_each(|u| *u *= value),
                 None => {
-                    let own = self.inputs_at(one, k, middle);
+                    let own = self.inputs_at(simd, one, k, middle);
                     u.iter_mut().zip(own).for_each(|(u, own)| *u *= own);
                 }
             }
@@ -525,19 +553,25 @@ impl Block {
         }
         let fused = &one.fused[mode];
         let (rows, free) = (fused.rows, fused.free);
-        ends.resize(free.next_multiple_of(BLOCK), [0.0; LANES]);
+        ends.resize(free.next_multiple_of(BLOCK), Lanes::of(0.0));
         let settled = [&self.base[..rows], &self.least[..rows]];
-        alone |= product(simd, packed, [&self.v, entering], settled, ends, free);
+        let margins = product(simd, packed, [&self.v, entering], settled, ends, free);
         // As a single run looks at its growth; what is no number counts as grown.
-        let mut square = [0.0; LANES];
-        let mut add = |of: &Lanes| (0..LANES).for_each(|lane| square[lane] += of[lane] * of[lane]);
+        let mut square = Lanes::of(0.0);
+        let mut add = |of: &Lanes| {
+            for (sum, x) in S::as_mut_simd_f64s(&mut square.0).0.iter_mut().zip(S::as_simd_f64s(&of.0).0) {
+                *sum = simd.add_f64s(*sum, simd.mul_f64s(*x, *x));
+            }
+        };
         ends[..free].iter().for_each(&mut add);
         let s = &one.engine.system;
         if s.prescribed > 0 {
             let prescribed = s.drivers.iter().zip(&self.inputs).filter(|(driver, _)| driver.prescribed.is_some());
             prescribed.for_each(|(_, u)| add(u));
         }
-        alone |= mask(|lane| (square[lane] > self.bound[lane]) | square[lane].is_nan());
+        if breaks(simd, &margins, &square, &self.bound) {
+            alone |= mask(|lane| (margins[lane] < 0.0) | (square[lane] > self.bound[lane]) | square[lane].is_nan());
+        }
         alone &= alike;
         let going = alike & !alone;
         self.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
@@ -552,9 +586,9 @@ impl Block {
             for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
                 if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
                     let set = setpoint.value(middle, middle, &|_| 0.0);
-                    let w = self.followed(&s.speeds[driver.member.index()]);
+                    let w = self.followed(simd, &s.speeds[driver.member.index()]);
                     let mut sum = self.rest[s.all() + i];
-                    sum.iter_mut().zip(w).for_each(|(sum, w)| *sum += one.h * (set - w));
+                    sum.iter_mut().zip(*w).for_each(|(sum, w)| *sum += one.h * (set - w));
                     write(&mut self.rest[s.all() + i], &sum, going);
                 }
             }
@@ -573,8 +607,20 @@ fn mask(is_so: impl Fn(usize) -> bool) -> u8 {
     (0..LANES).map(|lane| u8::from(is_so(lane)) << lane).sum()
 }
 
-/// The product of a fused step with speeds and inputs of a block, and which runs break a margin. Kept are the speeds it
-/// ends with, as many as are free.
+/// Whether a margin breaks, or a run has grown beyond its bound, in any run: nearly always in none.
+#[inline(always)]
+fn breaks<S: pulp::Simd>(simd: S, margins: &Lanes, square: &Lanes, bound: &Lanes) -> bool {
+    let [margins, square, bound] = [margins, square, bound].map(|x| S::as_simd_f64s(&x.0).0);
+    let (holds, breaks) = (simd.splat_f64s(1.0), simd.splat_f64s(-1.0));
+    let all = margins.iter().zip(square).zip(bound).fold(holds, |all, ((margin, square), bound)| {
+        let of_margin = simd.select_f64s(simd.less_than_f64s(*margin, simd.splat_f64s(0.0)), breaks, all);
+        simd.select_f64s(simd.less_than_or_equal_f64s(*square, *bound), of_margin, breaks)
+    });
+    simd.reduce_min_f64s(all) < 0.0
+}
+
+/// The product of a fused step with speeds and inputs of a block. Kept are the speeds it ends with, as many as are free; told
+/// is the least margin of each run.
 #[inline(always)]
 fn product<S: pulp::Simd>(
     simd: S,
@@ -583,12 +629,12 @@ fn product<S: pulp::Simd>(
     [base, least]: [&[Lanes]; 2],
     ends: &mut [Lanes],
     free: usize,
-) -> u8 {
+) -> Lanes {
     let terms = v.len() + entering.len();
-    let mut least_margins = [f64::INFINITY; LANES];
-    let (worst, _) = S::as_mut_simd_f64s(&mut least_margins);
+    let mut least_margins = Lanes::of(f64::INFINITY);
+    let (worst, _) = S::as_mut_simd_f64s(&mut least_margins.0);
     for (part, worst) in worst.iter_mut().enumerate() {
-        let of = |x: &Lanes| S::as_simd_f64s(x).0[part];
+        let of = |x: &Lanes| S::as_simd_f64s(&x.0).0[part];
         let mut margin = *worst;
         let rows = base.as_chunks::<BLOCK>().0.iter().zip(least.as_chunks::<BLOCK>().0);
         for (at, ((base, least), weights)) in rows.zip(packed.chunks_exact(BLOCK * terms)).enumerate() {
@@ -603,16 +649,15 @@ fn product<S: pulp::Simd>(
             let (of_speeds, of_inputs) = weights.as_chunks().0.split_at(v.len());
             of_speeds.iter().zip(v).for_each(&mut add);
             of_inputs.iter().zip(entering).for_each(&mut add);
-            for k in 0..BLOCK {
-                margin = simd.min_f64s(margin, simd.sub_f64s(sums[k], of(&least[k])));
-            }
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| simd.sub_f64s(sums[k], of(&least[k])));
+            margin = simd.min_f64s(margin, simd.min_f64s(simd.min_f64s(a, b), simd.min_f64s(c, d)));
             if at * BLOCK < free {
                 for k in 0..BLOCK {
-                    S::as_mut_simd_f64s(&mut ends[at * BLOCK + k]).0[part] = sums[k];
+                    S::as_mut_simd_f64s(&mut ends[at * BLOCK + k].0).0[part] = sums[k];
                 }
             }
         }
         *worst = margin;
     }
-    mask(|lane| least_margins[lane] < 0.0)
+    least_margins
 }

@@ -1,6 +1,7 @@
 //! What assembly of a train knows so far, and the checks that all its parts share.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::fmt;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, is_printable};
 use crate::exact::Rational;
@@ -49,13 +50,18 @@ impl Assembler<'_> {
     }
 
     /// The member of that name, or an error at `place`.
-    pub fn resolve(&mut self, name: &str, place: &str) -> Option<MemberId> {
+    pub fn resolve(&mut self, name: &str, place: fmt::Arguments<'_>) -> Option<MemberId> {
         let found = self.by_name.get(name).copied();
         if found.is_none() && !self.hints_are_read() {
-            self.report(Diagnostic::new(Code::UnknownName, place, format!("there is no member `{}`", clip(name))));
+            self.report(Diagnostic::new(
+                Code::UnknownName,
+                place.to_string(),
+                format!("there is no member `{}`", clip(name)),
+            ));
         } else if found.is_none() {
             let known: Vec<&str> = self.members.iter().map(|m| m.name.as_str()).collect();
-            let mut d = Diagnostic::new(Code::UnknownName, place, format!("there is no member `{}`", clip(name)));
+            let mut d =
+                Diagnostic::new(Code::UnknownName, place.to_string(), format!("there is no member `{}`", clip(name)));
             d = d.suggest(name, known.iter().copied());
             if d.hints.is_empty() {
                 d = d.hint(format!("name it in `members`, or use one of: {}", list(known)));
@@ -118,10 +124,10 @@ impl Assembler<'_> {
     }
 
     /// A tooth count as a number to calculate with; out of range is reported once, here.
-    pub fn teeth(&mut self, teeth: i64, place: &str) -> Rational {
+    pub fn teeth(&mut self, teeth: i64, place: fmt::Arguments<'_>) -> Rational {
         if !(1..=MOST_TEETH).contains(&teeth) {
             let message = format!("{teeth} teeth: a tooth count is an integer from 1 to {MOST_TEETH}");
-            let mut d = Diagnostic::new(Code::OutOfRange, place, message);
+            let mut d = Diagnostic::new(Code::OutOfRange, place.to_string(), message);
             if teeth < 0 {
                 d = d.hint("a ring gear has `internal = true` (or is the `ring` of a set), not a negative tooth count");
             }
@@ -130,18 +136,18 @@ impl Assembler<'_> {
         Rational::from(teeth.clamp(1, MOST_TEETH))
     }
 
-    pub fn count(&mut self, count: i64, place: &str) -> u32 {
+    pub fn count(&mut self, count: i64, place: fmt::Arguments<'_>) -> u32 {
         if !(1..=MOST_COUNT).contains(&count) {
             let message = format!("a count of {count}: it is an integer from 1 to {MOST_COUNT}");
-            self.report(Diagnostic::new(Code::OutOfRange, place, message));
+            self.report(Diagnostic::new(Code::OutOfRange, place.to_string(), message));
         }
         count.clamp(1, MOST_COUNT) as u32
     }
 
-    pub fn efficiency(&mut self, spec: &EfficiencySpec, place: &str) -> Efficiency {
+    pub fn efficiency(&mut self, spec: &EfficiencySpec, place: fmt::Arguments<'_>) -> Efficiency {
         let (Some(forward), Some(backward)) = (spec.forward(), spec.backward()) else {
             let message = "an efficiency that is no finite number: it is above 0 and at most 1";
-            self.report(Diagnostic::new(Code::OutOfRange, place, message));
+            self.report(Diagnostic::new(Code::OutOfRange, place.to_string(), message));
             return Efficiency::lossless();
         };
         for value in [forward, backward] {
@@ -149,7 +155,7 @@ impl Assembler<'_> {
                 let shown = value.to_f64();
                 let mut d = Diagnostic::new(
                     Code::OutOfRange,
-                    place,
+                    place.to_string(),
                     format!("an efficiency of {shown}: it is above 0 and at most 1"),
                 );
                 if (1.0..=100.0).contains(&shown) {

@@ -215,8 +215,8 @@ pub(super) fn inputs(
         if let (Some(given), None) = (&mesh.efficiency, &mesh.loss_table) {
             list.efficiency(&format!("{name}.efficiency"), given, &[(j, false)]);
         }
-        let gears = [0, 1].map(|k| (format!("{name}.gears.{k}"), &mesh.gears[k].tooth));
         if let Some(g) = &mesh.geometry {
+            let gears = [0, 1].map(|k| (format!("{name}.gears.{k}"), &mesh.gears[k].tooth));
             list.teeth(j, &gears, g, &format!("{name}.geometry"));
         }
     }
@@ -391,21 +391,15 @@ impl List<'_> {
             }
         }
         for (j, pair) in meshes.into_iter().zip(&pairs) {
+            let own = pair.central.and_then(|(k, g)| Some((k, g.geometry.as_ref()?)));
+            let Some(g) = own.map(|(_, g)| g).or(set.geometry.as_ref()) else { continue };
             let path = |k: usize| {
                 let (key, number, _) = pair.gears[k];
-                key.replace('#', &number.to_string())
+                format!("{name}.{}", key.replace('#', &number.to_string()))
             };
-            let gears = [0, 1].map(|k| (format!("{name}.{}", path(k)), &pair.gears[k].2));
-            let own = pair.central.and_then(|(k, g)| Some((path(k), g.geometry.as_ref()?)));
-            match (own, &set.geometry) {
-                (Some((key, g)), _) => {
-                    self.teeth(j, &gears, g, &format!("{name}.{key}.geometry"));
-                }
-                (None, Some(g)) => {
-                    self.teeth(j, &gears, g, &format!("{name}.geometry"));
-                }
-                (None, None) => {}
-            }
+            let gears = [0, 1].map(|k| (path(k), &pair.gears[k].2));
+            let at = own.map_or_else(|| name.clone(), |(k, _)| path(k));
+            self.teeth(j, &gears, g, &format!("{at}.geometry"));
         }
         let members = self.train.set_planets.get(index).cloned().unwrap_or_default();
         for (member, (key, planet)) in members.into_iter().zip(set.planets()) {

@@ -29,8 +29,10 @@ impl Reading {
 }
 
 fn locate(spans: &format::Spans, text: &str, diagnostics: &mut Diagnostics) {
-    for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
-        d.span = spans.nearest(&d.place).map(Span::from);
+    let mut sought = diagnostics.iter_mut().filter(|d| d.span.is_none()).peekable();
+    let index = sought.peek().map(|_| spans.index());
+    for d in sought {
+        d.span = index.as_ref().and_then(|index| index.nearest(&d.place)).map(Span::from);
         // A suggestion replaces a name; inside quotes, if that is what stands there.
         if let (Some(span), Some(new)) = (&d.span, &mut d.replacement)
             && let Some(quote) = text[span.range()].chars().next().filter(|c| matches!(c, '"' | '\''))

@@ -17,15 +17,36 @@ use super::synonyms;
 
 /// Where each place of the document stands in the text.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Spans(HashMap<String, Range<usize>>);
+pub(crate) struct Spans {
+    /// The places, one after the other.
+    places: String,
+    /// Where each of them ends there, and where it stands in the document.
+    all: Vec<(usize, Range<usize>)>,
+}
 
 impl Spans {
+    fn add(&mut self, place: &str, span: Range<usize>) {
+        self.places.push_str(place);
+        self.all.push((self.places.len(), span));
+    }
+
+    /// All of them, to look many up.
+    pub fn index(&self) -> SpanIndex<'_> {
+        let starts = std::iter::once(0).chain(self.all.iter().map(|(end, _)| *end));
+        SpanIndex(starts.zip(&self.all).map(|(start, (end, span))| (&self.places[start..*end], span)).collect())
+    }
+}
+
+/// Where each place stands, by its name.
+pub(crate) struct SpanIndex<'s>(HashMap<&'s str, &'s Range<usize>>);
+
+impl SpanIndex<'_> {
     /// The span of a place, or of the smallest thing around it that has one.
     pub fn nearest(&self, place: &str) -> Option<Range<usize>> {
         let mut place = place;
         loop {
             if let Some(span) = self.0.get(place) {
-                return Some(span.clone());
+                return Some((*span).clone());
             }
             place = &place[..place.rfind(['.', '['])?];
         }
@@ -125,7 +146,7 @@ impl Reader<'_> {
         for (key, value) in map {
             let name = key.get_ref();
             let place = join(path, name);
-            self.spans.0.insert(place.clone(), value.span());
+            self.spans.add(&place, value.span());
             match table.key(name) {
                 Some(known) => {
                     if let Some(node) = self.value(value, &known.kind, &place) {
@@ -223,8 +244,8 @@ impl Reader<'_> {
                 };
                 let mut names = Vec::new();
                 for (k, item) in array.iter().enumerate() {
-                    let place = format!("{place}[{k}]");
-                    self.spans.0.insert(place.clone(), item.span());
+                    let place = entry(place, k);
+                    self.spans.add(&place, item.span());
                     match item.get_ref().as_str() {
                         Some(name) => names.push(name.to_owned()),
                         None => self.wrong_type(&place, item, "names in quotes"),
@@ -239,8 +260,8 @@ impl Reader<'_> {
                 };
                 let mut all = Vec::new();
                 for (k, item) in array.iter().enumerate() {
-                    let place = format!("{place}[{k}]");
-                    self.spans.0.insert(place.clone(), item.span());
+                    let place = entry(place, k);
+                    self.spans.add(&place, item.span());
                     match item.get_ref() {
                         DeValue::String(name) => all.push((name.to_string(), None)),
                         DeValue::Table(table) => {
@@ -326,8 +347,8 @@ impl Reader<'_> {
                 Some(table) => {
                     let mut all = Vec::new();
                     for (name, value) in table {
-                        let place = format!("{place}.{}", name.get_ref());
-                        self.spans.0.insert(place.clone(), name.span());
+                        let place = join(place, name.get_ref());
+                        self.spans.add(&place, name.span());
                         all.extend(self.store(value, &place).map(|power| (name.get_ref().to_string(), power)));
                     }
                     Some(Node::Stores(all))
@@ -341,9 +362,9 @@ impl Reader<'_> {
                 };
                 let mut all = Vec::new();
                 for (name, value) in table {
-                    let place = format!("{place}.{}", name.get_ref());
+                    let place = join(place, name.get_ref());
                     // The whole entry, so that a message about the member underlines its name.
-                    self.spans.0.insert(place.clone(), name.span());
+                    self.spans.add(&place, name.span());
                     if let Some(q) = self.quantity(value, *dimension, &place) {
                         all.push((name.get_ref().to_string(), q));
                     }
@@ -374,9 +395,9 @@ impl Reader<'_> {
                     self.wrong_type(place, value, "a list of two signals, the second of plain numbers");
                     return None;
                 };
-                let places = [0, 1].map(|k| format!("{place}[{k}]"));
+                let places = [0, 1].map(|k| entry(place, k));
                 for (place, value) in places.iter().zip([first, second]) {
-                    self.spans.0.insert(place.clone(), value.span());
+                    self.spans.add(place, value.span());
                 }
                 let first = self.signal(first, kinds[0](), &places[0]);
                 let second = self.signal(second, kinds[1](), &places[1]);
@@ -428,8 +449,8 @@ impl Reader<'_> {
         };
         let mut all = Vec::new();
         for (k, item) in array.iter().enumerate() {
-            let place = format!("{place}[{k}]");
-            self.spans.0.insert(place.clone(), item.span());
+            let place = entry(place, k);
+            self.spans.add(&place, item.span());
             match item.get_ref().as_table() {
                 Some(map) => {
                     if let Some(table) = table_of(map) {
@@ -464,15 +485,15 @@ impl Reader<'_> {
         };
         let mut all = Vec::with_capacity(array.len());
         for (k, item) in array.iter().enumerate() {
-            let place = format!("{place}[{k}]");
-            self.spans.0.insert(place.clone(), item.span());
+            let place = entry(place, k);
+            self.spans.add(&place, item.span());
             let Some(values) = item.get_ref().as_array().and_then(pair) else {
                 self.wrong_type(&place, item, &format!("a pair, {example}"));
                 continue;
             };
-            let places = [0, 1].map(|j| format!("{place}[{j}]"));
+            let places = [0, 1].map(|j| entry(&place, j));
             for (place, value) in places.iter().zip(values) {
-                self.spans.0.insert(place.clone(), value.span());
+                self.spans.add(place, value.span());
             }
             all.extend(read(self, values, [&places[0], &places[1]]));
         }
@@ -501,7 +522,7 @@ impl Reader<'_> {
             self.diagnostics.push(d.hint(listed()));
             return None;
         };
-        self.spans.0.insert(at.clone(), given.span());
+        self.spans.add(&at, given.span());
         let Some(name) = given.get_ref().as_str() else {
             self.wrong_type(&at, given, "a text in quotes");
             return None;
@@ -529,7 +550,7 @@ impl Reader<'_> {
         let mut found = [None, None];
         for (key, value) in table {
             let place = join(place, key.get_ref());
-            self.spans.0.insert(place.clone(), value.span());
+            self.spans.add(&place, value.span());
             match names.iter().position(|n| n == key.get_ref()) {
                 Some(k) => found[k] = Some(read(self, value, &place)),
                 None => {
@@ -580,7 +601,7 @@ impl Reader<'_> {
             return Some(Node::Efficiency(Directed { forward, backward: Some(backward) }));
         };
         let place = join(place, "map");
-        self.spans.0.insert(place.clone(), map.span());
+        self.spans.add(&place, map.span());
         match map.get_ref().as_str() {
             Some(file) => Some(Node::Text(file.to_owned())),
             None => {
@@ -704,6 +725,20 @@ fn describe(value: &DeValue<'_>) -> String {
 
 fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { [path, ".", key].concat() }
+}
+
+/// The place of an entry of a list.
+fn entry(list: &str, k: usize) -> String {
+    let mut place = String::with_capacity(list.len() + "[99]".len());
+    place.push_str(list);
+    place.push('[');
+    // Nearly all lists are short, and a number that is written as any other takes three times as long.
+    match u32::try_from(k).ok().and_then(|k| char::from_digit(k, 10)) {
+        Some(digit) => place.push(digit),
+        None => place += &k.to_string(),
+    }
+    place.push(']');
+    place
 }
 
 fn last(place: &str) -> &str {
