@@ -180,26 +180,7 @@ fn cold(c: &mut Criterion) {
     group.bench_function("eight-speed-text-to-answer", |b| {
         b.iter(|| analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
     });
-    let texts: Vec<String> = [
-        include_str!("../../../examples/simpson-ford-c4.toml"),
-        include_str!("../../../examples/zf-4hp22.toml"),
-        include_str!("../../../examples/zf-5hp24.toml"),
-        include_str!("../../../examples/mercedes-w5a580.toml"),
-        include_str!("../../../examples/zf-8hp-gen4.toml"),
-        include_str!("../../../examples/mercedes-9g-tronic.toml"),
-        include_str!("../../../examples/ford-10r80.toml"),
-        include_str!("../../../examples/aisin-tl-80sn.toml"),
-        include_str!("../../../examples/aisin-ab80.toml"),
-    ]
-    .iter()
-    .flat_map(|t| {
-        [
-            t.to_string(),
-            t.replace("basic_efficiency = 0.98", "basic_efficiency = 0.97")
-                .replace("external = 0.98", "external = 0.97"),
-        ]
-    })
-    .collect();
+    let texts = trains::automatics();
     group.bench_function("nine-automatics-two-loss-levels", |b| {
         b.iter(|| {
             for text in &texts {

@@ -30,11 +30,13 @@ type Task = (&'static str, usize, fn(usize));
 const TASKS: &[Task] = &[
     ("map-all", POINTS, map_all),
     ("map-efficiency", POINTS, map_efficiency),
+    ("map-efficiency-f32", POINTS, map_efficiency_f32),
     ("map-reduced", POINTS, map_reduced),
     ("map-grid-efficiency", GRID, map_grid),
     ("map-grid-reduced", GRID, map_grid_reduced),
     ("study-map", STUDY, study_map),
     ("automatic-gear-1", POINTS, |n| automatic("1", false, n)),
+    ("automatic-gear-3", POINTS, |n| automatic("3", false, n)),
     ("automatic-gear-5", POINTS, |n| automatic("5", false, n)),
     ("automatic-one-point", POINTS, |n| one_point(false, n)),
     ("automatic-load-gear-1", POINTS, |n| automatic("1", true, n)),
@@ -42,6 +44,9 @@ const TASKS: &[Task] = &[
     ("automatic-load-gear-5", POINTS, |n| automatic("5", true, n)),
     ("automatic-load-one-point", POINTS, |n| one_point(true, n)),
     ("eight-speed-text-to-answer", 1, cold),
+    ("nine-automatics-two-loss-levels", 1, nine_cold),
+    ("eight-speed-compile-one-gear", 1, compile_one_gear),
+    ("stage-one-point", 1, stage_one_point),
     ("physical-stage-sweep", SIDE * SIDE, physical_stage),
     ("physical-eight-speed-sweep", SIDE * SIDE, physical_eight_speed),
     ("stage-sensitivity", 1, stage_sensitivity),
@@ -180,6 +185,16 @@ fn map_efficiency(n: usize) {
     run(&power_split(&[CompiledOutput::Efficiency]), &[&w0, &w1], &t, n);
 }
 
+fn map_efficiency_f32(n: usize) {
+    let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
+    let compiled = power_split(&[CompiledOutput::Efficiency]);
+    let (mut work, mut out) = (compiled.workspace(), vec![0f32; t.len()]);
+    for _ in 0..n {
+        let points = BatchInputs { speeds: &[&w0, &w1], torques: &[&t] };
+        compiled.evaluate_batch_f32(&points, &mut work, &mut [black_box(&mut out)]);
+    }
+}
+
 fn eight_speed(gear: &str, by_load: bool) -> CompiledTrain {
     let train = Train::from_toml(include_str!("../../../examples/zf-8hp70.toml")).unwrap();
     let mut duty =
@@ -218,6 +233,30 @@ fn cold(n: usize) {
     let text = include_str!("../../../examples/zf-8hp70.toml");
     for _ in 0..n {
         black_box(analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
+    }
+}
+
+fn nine_cold(n: usize) {
+    let texts = trains::automatics();
+    for text in (0..n).flat_map(|_| &texts) {
+        black_box(analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
+    }
+}
+
+fn compile_one_gear(n: usize) {
+    let train = Train::from_toml(include_str!("../../../examples/zf-8hp70.toml")).unwrap();
+    let duty = CompileRequest::new(["input"], ["input"]).state("5").output(CompiledOutput::Efficiency);
+    for _ in 0..n {
+        black_box(train.compile(black_box(&duty)).unwrap());
+    }
+}
+
+/// The rated point of the stage.
+fn stage_one_point(n: usize) {
+    let train = Train::from_toml(trains::STAGE).unwrap();
+    let rated = Selection { operation: Some("rated".into()), ..Selection::default() };
+    for _ in 0..n {
+        black_box(analyze(black_box(&train), &rated).unwrap());
     }
 }
 

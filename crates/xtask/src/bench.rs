@@ -213,6 +213,35 @@ impl Table {
     }
 }
 
+const BENCHES: [&str; 3] = ["compiled", "motion", "answers"];
+
+/// The programs of a build, by their names.
+struct Programs(Vec<(String, PathBuf)>);
+
+impl Programs {
+    /// Builds what is measured, all at once, so that the library is built once: as published, but with its names.
+    fn build(root: &Path) -> Result<Self, String> {
+        let mut c = Command::new("cargo");
+        c.current_dir(root).args(["build", "--profile", "bench", "--quiet", "-p", "willis", "-p", "willis-cli"]);
+        c.args(["--bin", "willis", "--message-format", "json-render-diagnostics"]);
+        for bench in BENCHES {
+            c.args(["--bench", bench]);
+        }
+        let out = c.stderr(Stdio::inherit()).output().map_err(|e| e.to_string())?;
+        if !out.status.success() {
+            return Err("the build failed".into());
+        }
+        let told = lines(&String::from_utf8_lossy(&out.stdout))?;
+        let program = |v: &Value| Some((v["target"]["name"].as_str()?.to_owned(), v["executable"].as_str()?.into()));
+        Ok(Self(told.iter().filter_map(program).collect()))
+    }
+
+    fn of(&self, name: &str) -> Result<&Path, String> {
+        let found = self.0.iter().find(|(n, _)| n == name);
+        found.map(|(_, path)| path.as_path()).ok_or_else(|| format!("the build has no program `{name}`"))
+    }
+}
+
 /// What is being done, and since when.
 #[derive(Default)]
 struct Stage(Option<(&'static str, Instant)>);
@@ -241,20 +270,17 @@ fn run(root: &Path) -> Result<(), String> {
     let python = python(root, &folder)?;
     let mut stage = Stage::default();
     stage.begins("building");
-    let benches = ["--bench", "compiled", "--bench", "motion", "--bench", "answers"];
-    command(
-        Command::new("cargo").current_dir(root).args(["bench", "-p", "willis", "--no-run", "--quiet"]).args(benches),
-    )?;
-    let program = ["build", "--profile", "dist", "--quiet", "-p", "willis-cli"];
-    command(Command::new("cargo").current_dir(root).args(program))?;
+    let built = Programs::build(root)?;
     stage.begins("Willis");
-    // Two seconds a task: the best of many short samples is what is kept.
-    let criterion = ["--", "--noplot", "--quiet", "--warm-up-time", "0.5", "--measurement-time", "2"];
-    let mut c = Command::new("cargo");
-    c.current_dir(root).args(["bench", "-p", "willis", "--quiet"]).args(benches).args(criterion);
-    // Large pages for long arrays, as NumPy has them for its own.
-    c.env("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1").env("CRITERION_HOME", root.join("target/criterion"));
-    command(c.stdout(std::process::Stdio::null()))?;
+    for bench in BENCHES {
+        // Two seconds a task: the best of many short samples is what is kept.
+        let arguments = ["--bench", "--noplot", "--quiet", "--warm-up-time", "0.5", "--measurement-time", "2"];
+        let mut c = Command::new(built.of(bench)?);
+        c.current_dir(root.join("crates/willis")).args(arguments).stdout(Stdio::null());
+        // Large pages for long arrays, as NumPy has them for its own.
+        c.env("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1").env("CRITERION_HOME", root.join("target/criterion"));
+        command(&mut c)?;
+    }
     let mut peers = Vec::new();
     let scripts: [(&str, &[&str]); 4] = [
         ("map.py", &["--points", "10000000"]),
@@ -294,7 +320,7 @@ fn run(root: &Path) -> Result<(), String> {
         let one = Measured { value: ours.value, spread: ours.spread };
         table.row((task, "one by one"), (Some(1.0), one), true, Times(goal), "");
     }
-    commands(&results, &mut table, &mut wrong)?;
+    commands(built.of("willis")?, &results, &mut table, &mut wrong)?;
     stage.ends();
     fs::write(folder.join("table.txt"), table.lines.join("\n") + "\n").map_err(|e| e.to_string())?;
     println!(
@@ -471,17 +497,15 @@ fn kept(folder: &Path, files: &[&Path]) -> std::io::Result<f64> {
 }
 
 /// Whole commands: wall time of the program.
-fn commands(results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Result<(), String> {
+fn commands(willis: &Path, results: &Results, table: &mut Table, wrong: &mut Vec<String>) -> Result<(), String> {
     let root = &results.root;
-    let willis = root.join("target/dist/willis");
-    let run = |arguments: &[&str], runs: usize| timed(&willis, root, arguments, runs);
+    let run = |arguments: &[&str], runs: usize| timed(willis, root, arguments, runs);
     let map = ["sweep", "benches/map.toml", "--study", "map", "--fast", "--format", "json", "--threads"];
     let folder = root.join("target/willis-bench");
     let out = |name: &str| folder.join(name).to_string_lossy().into_owned();
     let on = |threads: &'static str| [&map[..], &[threads]].concat();
     let at_once = |arguments: &[&str], one: Measured, runs: usize| {
-        two_at_once(&willis, root, arguments, one.value, runs)
-            .map(|times| format!("{times:.2} x: two programs at once"))
+        two_at_once(willis, root, arguments, one.value, runs).map(|times| format!("{times:.2} x: two programs at once"))
     };
     let mut two = f64::NAN;
     for threads in ["1", "2"] {

@@ -97,6 +97,25 @@ pub fn automatic() -> Train {
     Train::from_toml(&automatic_text()).unwrap()
 }
 
+/// The texts of nine automatics, each with two levels of loss.
+pub fn automatics() -> Vec<String> {
+    let texts = [
+        include_str!("../../../../examples/simpson-ford-c4.toml"),
+        include_str!("../../../../examples/zf-4hp22.toml"),
+        include_str!("../../../../examples/zf-5hp24.toml"),
+        include_str!("../../../../examples/mercedes-w5a580.toml"),
+        include_str!("../../../../examples/zf-8hp-gen4.toml"),
+        include_str!("../../../../examples/mercedes-9g-tronic.toml"),
+        include_str!("../../../../examples/ford-10r80.toml"),
+        include_str!("../../../../examples/aisin-tl-80sn.toml"),
+        include_str!("../../../../examples/aisin-ab80.toml"),
+    ];
+    let more_loss = |text: &str| {
+        text.replace("basic_efficiency = 0.98", "basic_efficiency = 0.97").replace("external = 0.98", "external = 0.97")
+    };
+    texts.iter().flat_map(|text| [text.to_string(), more_loss(text)]).collect()
+}
+
 /// A stage with teeth, bearings, seals and windage, and the axes of a map of it.
 pub const STAGE: &str = include_str!("../../../../examples/fva-planetary-stage.toml");
 
