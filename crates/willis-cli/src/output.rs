@@ -171,10 +171,19 @@ impl Unfinished {
         self.file.path()
     }
 
-    /// Gives it its name.
+    /// Gives it its name, on the disk too.
     pub fn complete(self) -> Result<(), String> {
+        self.file().sync_all().map_err(told(&self.target))?;
+        let folder = folder_of(&self.target).to_owned();
+        self.name()?;
+        // Some systems open no folders.
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+
+    /// Gives it its name. Should the power fail, it may be empty or gone.
+    fn name(self) -> Result<(), String> {
         let fail = told(&self.target);
-        self.file().sync_all().map_err(&fail)?;
         let before = fs::symlink_metadata(&self.target).ok().filter(|m| m.is_file());
         if let Some(before) = before {
             // Who may read the old file may read the new one, and nobody else.
@@ -186,12 +195,15 @@ impl Unfinished {
             false => self.file.persist_noclobber(&self.target),
         };
         OPEN.lock().unwrap_or_else(PoisonError::into_inner).retain(|p| *p != own);
-        done.map_err(|e| fail(e.error))?;
-        // That the name is on the disk too.
-        #[cfg(unix)]
-        let _ = File::open(folder_of(&self.target)).and_then(|folder| folder.sync_all());
-        Ok(())
+        done.map(drop).map_err(|e| fail(e.error))
     }
+}
+
+/// Writes a file that its reader checks, and can do without: no disk is waited for.
+pub fn write_checked(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let unfinished = Unfinished::new(path, true)?;
+    unfinished.file().write_all(bytes).map_err(told(path))?;
+    unfinished.name()
 }
 
 /// Writes a file.

@@ -84,8 +84,9 @@ fn sure(c: &mut Criterion) {
     let model = Model::from_toml(trains::STAGE).unwrap();
     let train = model.train().clone();
     let operation = train.operations().iter().find(|o| o.name == "rated").unwrap().clone();
-    group.bench_function("stage-one-point", |b| b.iter(|| operate(black_box(&train), &operation).unwrap()));
     let rated = Selection { operation: Some("rated".into()), ..Selection::default() };
+    group.bench_function("stage-analysis", |b| b.iter(|| analyze(black_box(&train), &rated).unwrap()));
+    group.bench_function("stage-one-point", |b| b.iter(|| operate(black_box(&train), &operation).unwrap()));
     group.bench_function("stage-sensitivity", |b| b.iter(|| sensitivity(black_box(&train), &rated).unwrap()));
     let request = UncertaintyRequest { operation: Some("rated".into()), samples: 4096, ..Default::default() };
     group.sample_size(10);

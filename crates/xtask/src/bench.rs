@@ -106,7 +106,9 @@ const ANSWERS: &[Asked] = &[
     ("eight-speed-compile-one-gear", "", Most(1e-3), Words("")),
     ("regimes-longest", "", Most(20e-3), Words("")),
     ("stage-one-point", "", Goal::None, Words("")),
-    ("stage-sensitivity", "stage-one-point", Times(0.2), Words("")),
+    ("stage-analysis", "", Goal::None, Words("")),
+    ("stage-sensitivity", "stage-analysis", Times(0.2), Words("")),
+    ("stage-sensitivity", "stage-one-point", Goal::None, Words("the equilibrium alone, without its table")),
     // On one core; the command has all.
     ("stage-uncertainty", "", Goal::None, Words("")),
     ("automatic-longest-step", "", Most(1e-6), Words("")),
@@ -118,6 +120,10 @@ const ANSWERS: &[Asked] = &[
 
 /// How many times as fast a thousand runs are side by side as one after the other.
 const BATCHES: &[(&str, f64)] = &[("set-thousand", 10.0), ("automatic-thousand", 8.0)];
+
+/// The slowest gear of an automatic: points a second, from arrays of as many points.
+const GEARS: &[(&str, f64)] =
+    &[("gears-8hp70-1e5", 5e8), ("gears-8hp70-1e6", 2.5e8), ("gears-10r80-1e5", 5e8), ("gears-10r80-1e6", 2.5e8)];
 
 /// Samples of a task that lie further apart than this share, the middle one beside the shortest, say nothing.
 const STEADY: f64 = 0.15;
@@ -310,6 +316,10 @@ fn run(root: &Path) -> Result<(), String> {
     for &(task, peer, goal, limit) in RATES {
         let theirs = results.theirs(task, peer, true, &mut wrong)?;
         table.row((task, peer), (theirs, results.rate(task)?), true, goal, &limit.told(&results)?);
+    }
+    for &(task, goal) in GEARS {
+        let ours = results.recorded(task, "points_per_s")?;
+        table.row((task, "slowest gear"), (None, ours), true, Least(goal), "");
     }
     for &(task, peer, goal, limit) in ANSWERS {
         let theirs = results.theirs(task, peer, false, &mut wrong)?;

@@ -190,12 +190,12 @@ impl Parts {
         serde_json::from_slice(&input::whole(&path).map_err(fail)?).map_err(|e| fail(e.to_string()))
     }
 
-    /// Keeps a piece.
+    /// Keeps a piece. It is checked before it is taken for whole, so that no disk is waited for; the table is.
     pub fn keep(&self, k: u64, bytes: &[u8], summary: &Summary) -> Result<(), String> {
         let piece = self.piece(k);
-        output::write(&piece, bytes, true)?;
+        output::write_checked(&piece, bytes)?;
         let kept = Kept { sha256: hex(&Sha256::digest(bytes)), summary: summary.clone() };
-        output::write(&piece.with_extension("json"), &serde_json::to_vec(&kept).expect("plain data"), true)
+        output::write_checked(&piece.with_extension("json"), &serde_json::to_vec(&kept).expect("plain data"))
     }
 
     /// What to do after an error.
