@@ -271,7 +271,7 @@ fn gears(_: &mut Criterion) {
     ] {
         let train = Train::from_toml(text).unwrap();
         let [input, output] = [train.input(), train.output()].map(|m| train.member_name(m.unwrap()).to_owned());
-        let mut slowest = SIZES.map(|_| (f64::INFINITY, 0.0));
+        let mut slowest = SIZES.map(|_| (f64::INFINITY, 0.0, 0));
         for state in train.states() {
             let request = CompileRequest::new([input.as_str()], [input.as_str()]).state(&state.name);
             let mut request = request.output(CompiledOutput::Torque(output.clone()));
@@ -307,12 +307,13 @@ fn gears(_: &mut Criterion) {
                 });
                 println!("{name}, gear {}, {size} points: {:.3e} points/s", state.name, rate.0);
                 if rate.0 < slowest.0 {
-                    *slowest = rate;
+                    *slowest = (rate.0, rate.1, compiled.outputs());
                 }
             }
         }
-        for ((points, size), (rate, spread)) in SIZES.into_iter().zip(slowest) {
-            record(&format!("gears-{name}-{size}"), &[("points_per_s", rate), ("spread", spread)], points);
+        for ((points, size), (rate, spread, results)) in SIZES.into_iter().zip(slowest) {
+            let sums = [("points_per_s", rate), ("spread", spread), ("results", results as f64)];
+            record(&format!("gears-{name}-{size}"), &sums, points);
         }
     }
 }
