@@ -473,7 +473,7 @@ impl Bearing {
         }
         let series = plain(&self.series);
         let mut off = false;
-        if let Some(row) = all().iter().find(|r| r.kind == self.kind && r.series == series && same(r.bore, d)) {
+        if let Some(row) = row(self.kind, series, d) {
             if !same(row.outside_diameter, big_d) {
                 let series = self.series.clone();
                 found.push(Mismatch::OutsideDiameter { series, expected: row.outside_diameter, given: big_d });
@@ -500,11 +500,6 @@ impl Bearing {
         }
         found
     }
-}
-
-#[derive(Deserialize)]
-struct Geometry {
-    group: Vec<Group>,
 }
 
 #[derive(Deserialize)]
@@ -631,35 +626,73 @@ fn designation(kind: Kind, series: &str, bore_mm: f64) -> String {
     }
 }
 
+/// A group of the catalogue. It is read when a bearing of it is asked for: to read all of them takes longer than most
+/// questions.
+struct Section {
+    text: &'static str,
+    bearings: OnceLock<Vec<Bearing>>,
+}
+
+impl Section {
+    /// Whether it has bearings of a kind and series, by its first lines.
+    fn is_of(&self, kind: Kind, series: &str) -> bool {
+        let value = |key: &str| self.text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = "));
+        let kind_is = |name: &str| Kind::named(name.trim_matches('"')) == Some(kind);
+        value("kind").is_some_and(kind_is)
+            && value("series").is_some_and(|all| all.split('"').skip(1).step_by(2).any(|s| s == series))
+    }
+
+    fn bearings(&self) -> &[Bearing] {
+        self.bearings.get_or_init(|| {
+            let group: Group = toml::from_str(self.text).expect("data/bearings.toml is read");
+            let of = |series| group.rows.iter().map(move |row| (series, row));
+            group.series.iter().flat_map(of).map(|(series, row)| group.bearing(series, row)).collect()
+        })
+    }
+}
+
+impl Group {
+    fn bearing(&self, series: &str, row: &[f64]) -> Bearing {
+        let get = |name: &str| {
+            let place = self.columns.iter().position(|c| c == name)?;
+            row.get(place).copied()
+        };
+        let mm = |name: &str| get(name).expect("data/bearings.toml gives d, D and B") / 1e3;
+        let name = designation(self.kind, series, mm("d") * 1e3);
+        Bearing {
+            dynamic_rating: get("C").map(|kn| kn * 1e3),
+            static_rating: get("C0").map(|kn| kn * 1e3),
+            limiting_speed: get("n").map(|rpm| rpm * std::f64::consts::PI / 30.0),
+            axial_factor: get("Y"),
+            element_diameter: get("Dw").map(|mm| mm / 1e3),
+            source: self.source.clone(),
+            trust: self.trust,
+            ..Bearing::new(&name, self.kind, series, mm("d"), mm("D"), mm("B"))
+        }
+    }
+}
+
+fn sections() -> &'static [Section] {
+    static ALL: OnceLock<Vec<Section>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        // What comes before the first group is about the file.
+        let groups = include_str!("../../data/bearings.toml").split("[[group]]\n").skip(1);
+        groups.map(|text| Section { text, bearings: OnceLock::new() }).collect()
+    })
+}
+
+/// The bearing of a kind, series and bore (m), open.
+fn row(kind: Kind, series: &str, bore: f64) -> Option<&'static Bearing> {
+    sections().iter().filter(|s| s.is_of(kind, series)).flat_map(Section::bearings).find(|b| {
+        // A group may have several series.
+        b.series == series && same(b.bore, bore)
+    })
+}
+
 /// Every bearing of the catalogue, `data/bearings.toml`: one of each dimension series and bore, open.
 pub fn all() -> &'static [Bearing] {
     static ALL: OnceLock<Vec<Bearing>> = OnceLock::new();
-    ALL.get_or_init(|| {
-        let file: Geometry =
-            toml::from_str(include_str!("../../data/bearings.toml")).expect("data/bearings.toml is read");
-        let mut all = Vec::new();
-        for group in &file.group {
-            for (series, row) in group.series.iter().flat_map(|s| group.rows.iter().map(move |r| (s, r))) {
-                let get = |name: &str| {
-                    let place = group.columns.iter().position(|c| c == name)?;
-                    row.get(place).copied()
-                };
-                let mm = |name: &str| get(name).expect("data/bearings.toml gives d, D and B") / 1e3;
-                let name = designation(group.kind, series, mm("d") * 1e3);
-                all.push(Bearing {
-                    dynamic_rating: get("C").map(|kn| kn * 1e3),
-                    static_rating: get("C0").map(|kn| kn * 1e3),
-                    limiting_speed: get("n").map(|rpm| rpm * std::f64::consts::PI / 30.0),
-                    axial_factor: get("Y"),
-                    element_diameter: get("Dw").map(|mm| mm / 1e3),
-                    source: group.source.clone(),
-                    trust: group.trust,
-                    ..Bearing::new(&name, group.kind, series, mm("d"), mm("D"), mm("B"))
-                });
-            }
-        }
-        all
-    })
+    ALL.get_or_init(|| sections().iter().flat_map(Section::bearings).cloned().collect())
 }
 
 /// What a designation says.
@@ -787,8 +820,7 @@ pub fn find(designation: &str) -> Option<Bearing> {
             ..Bearing::new(name, parsed.kind, &parsed.series, bore, outside_diameter, width)
         });
     }
-    let row =
-        all().iter().find(|r| r.kind == parsed.kind && r.series == plain(&parsed.series) && same(r.bore, bore))?;
+    let row = row(parsed.kind, plain(&parsed.series), bore)?;
     Some(Bearing {
         designation: name.to_owned(),
         seal: parsed.seal,

@@ -829,3 +829,22 @@ fn plain_bearings_go_from_petroff_to_dry_friction() {
         assert!((numeric - exact).abs() < 1e-4 * exact.abs(), "{f}: {numeric} {exact}");
     }
 }
+
+/// Groups are read one by one; each designation leads to the first bearing of its kind, series and bore among all.
+#[test]
+fn every_designation_leads_to_its_row() {
+    let all = bearing::all();
+    for b in all {
+        let like = |r: &&Bearing| (r.kind, &r.series) == (b.kind, &b.series) && r.bore == b.bore;
+        let row = all.iter().find(like).unwrap();
+        let found = bearing::find(&b.designation).unwrap_or_else(|| panic!("{}", b.designation));
+        let numbers = |b: &Bearing| [b.bore, b.outside_diameter, b.width, b.static_rating.unwrap_or(0.0)];
+        assert_eq!(
+            (found.kind, numbers(&found), &found.source),
+            (row.kind, numbers(row), &row.source),
+            "{}",
+            b.designation
+        );
+    }
+    assert!(all.len() > 800, "{}", all.len());
+}
