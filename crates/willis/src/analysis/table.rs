@@ -237,10 +237,13 @@ fn direction(c: &Configuration<'_>, transfer: &Transfer, [from, to]: [MemberId; 
         };
     };
     let w_in = w_from.to_f64();
-    for s in answer.solutions.iter().filter(|_| has_one_way(c)) {
-        let ends = [(from, torque(c, s, node_from)), (to, load)];
-        if let Some(clutch) = overrunning(c, &demand(c, &s.forces, &s.rho), ends, forward) {
-            return Direction::without(Verdict::Undetermined, Why::Overruns { clutch });
+    // Only then is it worth the torques of all shift elements.
+    if has_one_way(c) {
+        for s in &answer.solutions {
+            let ends = [(from, torque(c, s, node_from)), (to, load)];
+            if let Some(clutch) = overrunning(c, &demand(c, &s.forces, &s.rho), ends, forward) {
+                return Direction::without(Verdict::Undetermined, Why::Overruns { clutch });
+            }
         }
     }
     let mut efficiencies: Vec<f64> = answer

@@ -638,8 +638,7 @@ impl Section {
     fn is_of(&self, kind: Kind, series: &str) -> bool {
         let value = |key: &str| self.text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(" = "));
         let kind_is = |name: &str| Kind::named(name.trim_matches('"')) == Some(kind);
-        value("kind").is_some_and(kind_is)
-            && value("series").is_some_and(|all| all.split('"').skip(1).step_by(2).any(|s| s == series))
+        value("kind").is_some_and(kind_is) && value("series").is_some_and(|all| all.contains(&format!("\"{series}\"")))
     }
 
     fn bearings(&self) -> &[Bearing] {
@@ -675,9 +674,9 @@ impl Group {
 fn sections() -> &'static [Section] {
     static ALL: OnceLock<Vec<Section>> = OnceLock::new();
     ALL.get_or_init(|| {
-        // What comes before the first group is about the file.
-        let groups = include_str!("../../data/bearings.toml").split("[[group]]\n").skip(1);
-        groups.map(|text| Section { text, bearings: OnceLock::new() }).collect()
+        // What stands before the first group is about the file.
+        let (_, groups) = include_str!("../../data/bearings.toml").split_once("[[group]]").expect("there are groups");
+        groups.split("[[group]]").map(|text| Section { text, bearings: OnceLock::new() }).collect()
     })
 }
 

@@ -33,17 +33,17 @@ const MOST_VARIATORS: usize = 16;
 
 impl Assembler<'_> {
     fn mesh(&mut self, spec: &GivenMesh, place: &str) {
-        let carrier = self.resolve(&spec.carrier, format_args!("{place}.carrier"));
+        let carrier = self.resolve(&spec.carrier, &format_args!("{place}.carrier"));
         let mut gears = Vec::with_capacity(2);
         for (k, g) in spec.gears.iter().enumerate() {
             let place = format!("{place}.gears[{k}]");
-            let teeth = self.teeth(g.teeth, format_args!("{place}.teeth"));
-            if let Some(member) = self.resolve(&g.member, format_args!("{place}.member")) {
+            let teeth = self.teeth(g.teeth, &format_args!("{place}.teeth"));
+            if let Some(member) = self.resolve(&g.member, &format_args!("{place}.member")) {
                 gears.push(Gear { member, teeth, internal: g.internal });
             }
         }
-        let given = spec.efficiency.as_ref().map(|e| self.efficiency(e, format_args!("{place}.efficiency")));
-        let count = self.count(spec.count, format_args!("{place}.count"));
+        let given = spec.efficiency.as_ref().map(|e| self.efficiency(e, &format_args!("{place}.efficiency")));
+        let count = self.count(spec.count, &format_args!("{place}.count"));
         let any_internal = spec.gears.iter().any(|g| g.internal);
         if any_internal && spec.same_sense == Some(false) {
             self.report(
@@ -138,7 +138,7 @@ impl Assembler<'_> {
         let at = place;
         let place = format!("{place}.members");
         let ids: Vec<_> =
-            spec.members.iter().enumerate().map(|(k, m)| self.resolve(m, format_args!("{place}[{k}]"))).collect();
+            spec.members.iter().enumerate().map(|(k, m)| self.resolve(m, &format_args!("{place}[{k}]"))).collect();
         let need: &[usize] = match spec.kind {
             ShiftElementKind::Clutch => &[2],
             ShiftElementKind::Brake => &[1],
@@ -188,8 +188,8 @@ impl Assembler<'_> {
                 engaged.push(ShiftElementId(id));
             }
         }
-        let input = spec.input.as_ref().and_then(|n| self.resolve(n, format_args!("{place}.input")));
-        let output = spec.output.as_ref().and_then(|n| self.resolve(n, format_args!("{place}.output")));
+        let input = spec.input.as_ref().and_then(|n| self.resolve(n, &format_args!("{place}.input")));
+        let output = spec.output.as_ref().and_then(|n| self.resolve(n, &format_args!("{place}.output")));
         State { name: spec.name.clone(), engaged, input, output }
     }
 
@@ -226,7 +226,7 @@ impl Assembler<'_> {
         };
         for (k, name) in spec.fixed.iter().enumerate() {
             let place = format!("{place}.fixed[{k}]");
-            let Some(id) = self.resolve(name, format_args!("{place}")) else { continue };
+            let Some(id) = self.resolve(name, &place) else { continue };
             if !seen.insert(id) {
                 let message = format!("`{name}` is held twice");
                 self.report(Diagnostic::new(Code::HeldAndDriven, place, message).hint("name it once"));
@@ -236,7 +236,7 @@ impl Assembler<'_> {
         }
         for (name, speed) in &spec.speeds {
             let place = format!("{place}.speeds.{name}");
-            let Some(id) = self.resolve(name, format_args!("{place}")) else { continue };
+            let Some(id) = self.resolve(name, &place) else { continue };
             if id == FRAME {
                 let message = "the frame is at rest; its speed is not prescribed";
                 self.report(Diagnostic::new(Code::HeldAndDriven, place, message));
@@ -268,7 +268,7 @@ impl Assembler<'_> {
                 }
                 continue;
             }
-            let Some(id) = self.resolve(name, format_args!("{place}")) else { continue };
+            let Some(id) = self.resolve(name, &place) else { continue };
             if operation.loads.iter().any(|(m, _)| *m == id) {
                 let message = format!("the load on `{name}` is given twice");
                 self.report(Diagnostic::new(Code::Conflict, place, message).hint("give a torque or a power, once"));
@@ -566,7 +566,7 @@ impl Assembler<'_> {
                 self.report(d.hint("give the terminal a name of its own"));
                 continue;
             }
-            let Some(on) = self.resolve(on, format_args!("terminals[{k}].member")) else { continue };
+            let Some(on) = self.resolve(on, &format_args!("terminals[{k}].member")) else { continue };
             let own = MemberId(self.members.len());
             self.by_name.insert(terminal.name.clone(), own);
             self.members.push(Member { name: terminal.name.clone(), kind: MemberKind::Shaft });
@@ -632,7 +632,7 @@ impl Assembler<'_> {
             let place = format!("terminals[{k}]");
             // What is wrong with the name of one on another member was told.
             let own = member.as_ref().is_some_and(|on| on != name);
-            let found = if own { self.by_name.get(name).copied() } else { self.resolve(name, format_args!("{place}")) };
+            let found = if own { self.by_name.get(name).copied() } else { self.resolve(name, &place) };
             let Some(id) = found else { continue };
             if id == FRAME {
                 self.report(Diagnostic::new(Code::BadName, place, "the frame is no terminal").hint("leave it out"));
@@ -643,10 +643,8 @@ impl Assembler<'_> {
                 terminals.push(id);
             }
         }
-        let input =
-            spec.input.as_ref().and_then(|n| self.resolve(n, format_args!("input"))).or(terminals.first().copied());
-        let output =
-            spec.output.as_ref().and_then(|n| self.resolve(n, format_args!("output"))).or(terminals.last().copied());
+        let input = spec.input.as_ref().and_then(|n| self.resolve(n, &"input")).or(terminals.first().copied());
+        let output = spec.output.as_ref().and_then(|n| self.resolve(n, &"output")).or(terminals.last().copied());
         // Inputs and outputs are terminals without being listed a second time; but what a machine of a variator drives is
         // driven from within.
         let within: Vec<MemberId> = variators.iter().flat_map(Variator::members).collect();

@@ -50,7 +50,7 @@ impl Assembler<'_> {
     }
 
     /// The member of that name, or an error at `place`.
-    pub fn resolve(&mut self, name: &str, place: fmt::Arguments<'_>) -> Option<MemberId> {
+    pub fn resolve(&mut self, name: &str, place: &dyn fmt::Display) -> Option<MemberId> {
         let found = self.by_name.get(name).copied();
         if found.is_none() && !self.hints_are_read() {
             self.report(Diagnostic::new(
@@ -124,7 +124,7 @@ impl Assembler<'_> {
     }
 
     /// A tooth count as a number to calculate with; out of range is reported once, here.
-    pub fn teeth(&mut self, teeth: i64, place: fmt::Arguments<'_>) -> Rational {
+    pub fn teeth(&mut self, teeth: i64, place: &dyn fmt::Display) -> Rational {
         if !(1..=MOST_TEETH).contains(&teeth) {
             let message = format!("{teeth} teeth: a tooth count is an integer from 1 to {MOST_TEETH}");
             let mut d = Diagnostic::new(Code::OutOfRange, place.to_string(), message);
@@ -136,7 +136,7 @@ impl Assembler<'_> {
         Rational::from(teeth.clamp(1, MOST_TEETH))
     }
 
-    pub fn count(&mut self, count: i64, place: fmt::Arguments<'_>) -> u32 {
+    pub fn count(&mut self, count: i64, place: &dyn fmt::Display) -> u32 {
         if !(1..=MOST_COUNT).contains(&count) {
             let message = format!("a count of {count}: it is an integer from 1 to {MOST_COUNT}");
             self.report(Diagnostic::new(Code::OutOfRange, place.to_string(), message));
@@ -144,7 +144,7 @@ impl Assembler<'_> {
         count.clamp(1, MOST_COUNT) as u32
     }
 
-    pub fn efficiency(&mut self, spec: &EfficiencySpec, place: fmt::Arguments<'_>) -> Efficiency {
+    pub fn efficiency(&mut self, spec: &EfficiencySpec, place: &dyn fmt::Display) -> Efficiency {
         let (Some(forward), Some(backward)) = (spec.forward(), spec.backward()) else {
             let message = "an efficiency that is no finite number: it is above 0 and at most 1";
             self.report(Diagnostic::new(Code::OutOfRange, place.to_string(), message));

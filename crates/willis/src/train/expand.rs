@@ -28,7 +28,7 @@ pub(super) fn planets(a: &mut Assembler<'_>, set: &GivenSet) -> Vec<MemberId> {
 /// Adds the meshes of a set.
 pub(super) fn expand(a: &mut Assembler<'_>, set: &GivenSet, planets: &[MemberId], index: usize) -> Option<Set> {
     let place = format!("set[{index}]");
-    let carrier = a.resolve(&set.carrier, format_args!("{place}.carrier"));
+    let carrier = a.resolve(&set.carrier, &format_args!("{place}.carrier"));
     if carrier.is_some_and(|carrier| planets.contains(&carrier)) {
         let message = format!("`{}` is a planet of set `{}`, and cannot be its carrier", set.carrier, clip(&set.name));
         a.report(

@@ -112,7 +112,7 @@ impl Assembler<'_> {
         for (name, value) in given {
             let place = format!("inertias.{name}");
             let good = self.positive(*value, true, "a moment of inertia", "kg m²", &place);
-            let Some(member) = self.resolve(name, format_args!("{place}")) else { continue };
+            let Some(member) = self.resolve(name, &place) else { continue };
             if member == FRAME {
                 self.refuse(Code::BadName, &place, "the frame does not turn and has no inertia", "leave it out");
             } else if all.iter().any(|i| i.member == member) {
@@ -364,7 +364,7 @@ impl Assembler<'_> {
             }
             if self.finite(&[("forward", row.forward), ("backward", row.backward)], &at) {
                 for (value, key) in [(row.forward, "forward"), (row.backward, "backward")] {
-                    self.efficiency(&EfficiencySpec::from(value), format_args!("{at}.{key}"));
+                    self.efficiency(&EfficiencySpec::from(value), &format_args!("{at}.{key}"));
                 }
                 let exact = |x: f64| Rational::from_f64(x).unwrap_or(Rational::ONE);
                 efficiencies.push(Efficiency { forward: exact(row.forward), backward: exact(row.backward) });
@@ -452,7 +452,7 @@ impl Assembler<'_> {
         let mut fixed = Vec::new();
         for (k, name) in names.iter().enumerate() {
             let place = format!("{place}.fixed[{k}]");
-            let Some(id) = self.resolve(name, format_args!("{place}")) else { continue };
+            let Some(id) = self.resolve(name, &place) else { continue };
             if fixed.contains(&id) {
                 let message = format!("`{}` is held twice", clip(name));
                 self.refuse(Code::HeldAndDriven, &place, message, "name it once");
@@ -468,7 +468,7 @@ impl Assembler<'_> {
         for (name, speed) in &spec.initial_speeds {
             let place = format!("{place}.initial_speeds.{name}");
             let good = self.finite(&[("", *speed)], &place);
-            let Some(id) = self.resolve(name, format_args!("{place}")).filter(|_| good) else { continue };
+            let Some(id) = self.resolve(name, &place).filter(|_| good) else { continue };
             let at_rest = id == FRAME || fixed.contains(&id);
             if at_rest && *speed != 0.0 {
                 let message = format!("`{}` is held and cannot turn with {speed} rad/s at the start", clip(name));
@@ -528,7 +528,7 @@ impl Assembler<'_> {
                 }
             };
             let (machine, member) = match machine {
-                None => (None, self.resolve(named, format_args!("{at}"))),
+                None => (None, self.resolve(named, &at)),
                 Some(found) => (found, found.map(|[v, k]| variators[v].machines()[k].member)),
             };
             if member == Some(FRAME) {
@@ -1001,7 +1001,7 @@ impl Assembler<'_> {
     /// The member of a name that stands within a text, where a suggestion cannot replace it.
     fn resolve_in_text(&mut self, name: &str, place: &str) -> Option<MemberId> {
         let before = self.diagnostics.len();
-        let found = self.resolve(name, format_args!("{place}"));
+        let found = self.resolve(name, &place);
         // `w_mg-1` reads as the speed of `mg`, less one.
         let cut = |m: &&str| m.strip_prefix(name).is_some_and(|rest| rest.starts_with(|c: char| !c.is_alphanumeric()));
         let meant = self.members.iter().map(|m| m.name.as_str()).find(cut).map(str::to_owned);

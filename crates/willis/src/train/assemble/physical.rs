@@ -704,7 +704,7 @@ impl Assembler<'_> {
     pub fn two_members(&mut self, names: &[String], what: &str, place: &str) -> Option<[MemberId; 2]> {
         let place = format!("{place}.members");
         let ids: Vec<_> =
-            names.iter().enumerate().map(|(k, m)| self.resolve(m, format_args!("{place}[{k}]"))).collect();
+            names.iter().enumerate().map(|(k, m)| self.resolve(m, &format_args!("{place}[{k}]"))).collect();
         if !(1..=2).contains(&ids.len()) {
             let message = format!("a {what} joins two members (or one and the frame), here are {}", ids.len());
             self.report(Diagnostic::new(Code::ShiftElement, place, message));
@@ -833,7 +833,7 @@ impl Assembler<'_> {
                     .hint("choose a bearing with that bore, or give the diameter of its own seat"),
             );
         }
-        let count = self.count(spec.count.unwrap_or(1), format_args!("{place}.count"));
+        let count = self.count(spec.count.unwrap_or(1), &format_args!("{place}.count"));
         if spec.locates == Some(true) && !bearing.takes_thrust() {
             let message = format!(
                 "bearing `{}`: a {} of designation `{}` holds no shaft along its axis",
@@ -885,7 +885,7 @@ impl Assembler<'_> {
         // A bush without a size of its own: a wall of a tenth of the bore.
         let outside = spec.outside_diameter.unwrap_or(1.2 * bore);
         let name = spec.designation.as_deref().unwrap_or(&spec.name);
-        let count = self.count(spec.count.unwrap_or(1), format_args!("{place}.count"));
+        let count = self.count(spec.count.unwrap_or(1), &format_args!("{place}.count"));
         Some(BearingMount {
             name: spec.name.clone(),
             members: members.filter(|_| good)?,
@@ -982,7 +982,7 @@ impl Assembler<'_> {
                     self.assume(name, "oil through the gaps of open packs not given, taken as 0.1 l/min each");
                 }
                 OpenElement::Pack {
-                    surfaces: self.count(spec.surfaces.unwrap_or(1), format_args!("{place}.surfaces")),
+                    surfaces: self.count(spec.surfaces.unwrap_or(1), &format_args!("{place}.surfaces")),
                     inner_radius,
                     outer_radius,
                     gap,
@@ -1009,7 +1009,7 @@ impl Assembler<'_> {
     }
 
     pub fn pump(&mut self, spec: &PlainPump, place: &str) -> Option<Pump> {
-        let member = self.resolve(&spec.member, format_args!("{place}.member"));
+        let member = self.resolve(&spec.member, &format_args!("{place}.member"));
         let mut good = true;
         for (value, what, unit, key) in [
             (spec.displacement * 1e6, "a displacement", "cm³", "displacement"),
@@ -1036,7 +1036,7 @@ impl Assembler<'_> {
     pub fn seal(&mut self, spec: &PlainSeal, place: &str) -> Option<SealMount> {
         let members = self.two_members(&spec.members, "seal", place);
         let good = self.positive(spec.diameter * 1e3, false, "a diameter", "mm", &format!("{place}.diameter"));
-        let count = self.count(spec.count.unwrap_or(1), format_args!("{place}.count"));
+        let count = self.count(spec.count.unwrap_or(1), &format_args!("{place}.count"));
         let members = members.filter(|_| good)?;
         let material = spec.material.unwrap_or(Material::Fkm);
         Some(SealMount { name: spec.name.clone(), members, diameter: spec.diameter, material, count })
@@ -1056,7 +1056,7 @@ impl Assembler<'_> {
     }
 
     pub fn rotor(&mut self, spec: &PlainRotor, place: &str) -> Option<Rotor> {
-        let member = self.resolve(&spec.member, format_args!("{place}.member"));
+        let member = self.resolve(&spec.member, &format_args!("{place}.member"));
         let axial_gap = spec.axial_gap.unwrap_or(spec.radial_gap);
         let mut good = true;
         for (value, what, key) in [

@@ -67,7 +67,7 @@ impl Assembler<'_> {
 
     /// A member that a variator acts on.
     fn acted_on(&mut self, name: &str, place: &str) -> Option<MemberId> {
-        let id = self.resolve(name, format_args!("{place}"))?;
+        let id = self.resolve(name, &place)?;
         if id == FRAME {
             let d = Diagnostic::new(Code::Variator, place, "the frame is at rest: no power passes through it");
             self.report(d.hint("name a member that turns; what holds a member is a brake"));
@@ -100,7 +100,7 @@ impl Assembler<'_> {
             return None;
         }
         let efficiency = match &spec.efficiency {
-            Some(e) => self.efficiency(e, format_args!("{place}.efficiency")),
+            Some(e) => self.efficiency(e, &format_args!("{place}.efficiency")),
             None => {
                 self.assume(&spec.name, "no efficiency given, taken as lossless");
                 Efficiency::lossless()
@@ -166,7 +166,7 @@ impl Assembler<'_> {
         let member = self.acted_on(name, &format!("{place}.{key}"));
         let efficiency = match &spec.efficiency {
             Some(MachineEfficiencySpec::Constant(e)) => {
-                Some(MachineEfficiency::Constant(self.efficiency(e, format_args!("{place}.efficiency"))))
+                Some(MachineEfficiency::Constant(self.efficiency(e, &format_args!("{place}.efficiency"))))
             }
             Some(MachineEfficiencySpec::Map(file)) => {
                 self.map(file, &format!("{place}.efficiency.map")).map(MachineEfficiency::Map)

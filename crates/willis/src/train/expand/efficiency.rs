@@ -46,8 +46,8 @@ fn described(e: &mut Expansion<'_, '_>, pairs: &[Pair<'_>]) -> Vec<Efficiency> {
                 SetEfficiencySpec::ByKind { external, internal } => (external, internal),
             };
             let place = format!("{}.mesh_efficiency", e.place);
-            let external = e.a.efficiency(external, format_args!("{place}"));
-            let internal = e.a.efficiency(internal, format_args!("{place}"));
+            let external = e.a.efficiency(external, &place);
+            let internal = e.a.efficiency(internal, &place);
             pairs
                 .iter()
                 .map(|p| if p.gears.iter().any(|g| g.internal) { internal.clone() } else { external.clone() })
@@ -61,7 +61,7 @@ fn described(e: &mut Expansion<'_, '_>, pairs: &[Pair<'_>]) -> Vec<Efficiency> {
 fn basic(e: &mut Expansion<'_, '_>, spec: &EfficiencySpec, pairs: &[Pair<'_>]) -> Vec<Efficiency> {
     let (a, name) = (&mut *e.a, &e.set.name);
     let place = format!("{}.basic_efficiency", e.place);
-    let eta = a.efficiency(spec, format_args!("{place}"));
+    let eta = a.efficiency(spec, &place);
     let sources = pairs.iter().filter(|p| p.central.is_some()).count();
     let mut all = vec![Efficiency::lossless(); pairs.len()];
     match &e.set.parts {

@@ -25,8 +25,8 @@ impl Expansion<'_, '_> {
     /// A central gear, under its key in the train file.
     pub fn central(&mut self, g: &GivenGear, key: &str) -> Option<PairGear> {
         let place = format!("{}.{key}", self.place);
-        let teeth = self.a.teeth(g.teeth, format_args!("{place}.teeth"));
-        let member = self.a.resolve(&g.member, format_args!("{place}.member"))?;
+        let teeth = self.a.teeth(g.teeth, &format_args!("{place}.teeth"));
+        let member = self.a.resolve(&g.member, &format_args!("{place}.member"))?;
         if Some(member) == self.carrier {
             let set = clip(&self.set.name);
             let message = format!("`{}` is both the {} and the carrier of set `{set}`", g.member, g.role());
@@ -40,7 +40,7 @@ impl Expansion<'_, '_> {
 
     /// How many planets there are of a kind.
     pub fn count(&mut self, p: &GivenPlanet, key: &str) -> Option<u32> {
-        p.count.map(|c| self.a.count(c, format_args!("{}.{key}.count", self.place)))
+        p.count.map(|c| self.a.count(c, &format_args!("{}.{key}.count", self.place)))
     }
 
     /// How many pairs of planets there are, from either of the two kinds.
@@ -58,7 +58,7 @@ impl Expansion<'_, '_> {
 
     /// The teeth of a planet, where they are given.
     pub fn planet_teeth(&mut self, p: &GivenPlanet, key: &str) -> Option<Rational> {
-        p.teeth.map(|t| self.a.teeth(t, format_args!("{}.{key}.teeth", self.place)))
+        p.teeth.map(|t| self.a.teeth(t, &format_args!("{}.{key}.teeth", self.place)))
     }
 
     /// A planet with teeth of this number, by its position among those of the set.

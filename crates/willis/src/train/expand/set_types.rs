@@ -78,7 +78,7 @@ pub(super) fn stepped<'s>(e: &mut Expansion<'s, '_>, gears: &'s [GivenGear], pla
         let k = if g.internal { &mut rings } else { &mut suns };
         let key = format!("{}s[{k}]", g.role());
         *k += 1;
-        let step = e.a.teeth(g.planet_teeth.unwrap_or(1), format_args!("{}.{key}.planet_teeth", e.place));
+        let step = e.a.teeth(g.planet_teeth.unwrap_or(1), &format_args!("{}.{key}.planet_teeth", e.place));
         let Some(c) = e.central(g, &key) else { continue };
         steps.push((if g.internal { -g.z() } else { g.z() }, step.clone()));
         let p = PairGear { member: e.planets[0], teeth: step, internal: false, tooth: g.planet_tooth.clone() };
@@ -162,7 +162,7 @@ pub(super) fn bevel<'s>(e: &mut Expansion<'s, '_>, sides: &'s [GivenGear], plane
     let mut pairs = Vec::new();
     for (k, g) in sides.iter().enumerate() {
         let key = format!("sides[{k}]");
-        let own = g.planet_teeth.map(|t| e.a.teeth(t, format_args!("{}.{key}.planet_teeth", e.place)));
+        let own = g.planet_teeth.map(|t| e.a.teeth(t, &format_args!("{}.{key}.planet_teeth", e.place)));
         let step = own.or(plain.clone()).unwrap_or_else(|| {
             e.a.assume(
                 &format!("{}.planet", e.set.name),

@@ -729,16 +729,7 @@ fn join(path: &str, key: &str) -> String {
 
 /// The place of an entry of a list.
 fn entry(list: &str, k: usize) -> String {
-    let mut place = String::with_capacity(list.len() + "[99]".len());
-    place.push_str(list);
-    place.push('[');
-    // Nearly all lists are short, and a number that is written as any other takes three times as long.
-    match u32::try_from(k).ok().and_then(|k| char::from_digit(k, 10)) {
-        Some(digit) => place.push(digit),
-        None => place += &k.to_string(),
-    }
-    place.push(']');
-    place
+    [list, "[", &k.to_string(), "]"].concat()
 }
 
 fn last(place: &str) -> &str {
