@@ -10,7 +10,7 @@ const COUNTS: &str = "benches/growth.csv";
 /// Instructions that a core of today's machines gets through in a second, about.
 const A_SECOND: f64 = 1e10;
 
-const WIDTH: f64 = 720.0;
+const WIDTH: f64 = 752.0;
 const LEFT: f64 = 76.0;
 const RIGHT: f64 = 600.0;
 const TOP: f64 = 84.0;
