@@ -3,6 +3,9 @@
 //! Runs that are in the same mode share the affine map of its step ([`super::fused`]), so that a block of them is stepped by
 //! vector instructions. A run that leaves its mode takes that one step alone.
 
+mod cruise;
+mod reach;
+
 use std::ops::{Deref, DerefMut};
 
 use crate::arch::Arch;
@@ -15,6 +18,8 @@ use super::fixed::groups::UNBOUNDED;
 use super::fused::BLOCK;
 use super::mode::{Side, dot};
 use super::report::Outcome;
+use cruise::{Law, followed};
+use reach::{Packed, Reach};
 
 /// Runs in a block.
 const LANES: usize = 8;
@@ -46,6 +51,22 @@ impl Lanes {
     fn of(x: f64) -> Self {
         Self([x; LANES])
     }
+
+    /// How many vectors it fills, and one of them.
+    #[inline(always)]
+    fn parts<S: pulp::Simd>(&self, _: S) -> usize {
+        S::as_simd_f64s(&self.0).0.len()
+    }
+
+    #[inline(always)]
+    fn part<S: pulp::Simd>(&self, _: S, part: usize) -> S::f64s {
+        S::as_simd_f64s(&self.0).0[part]
+    }
+
+    #[inline(always)]
+    fn set_part<S: pulp::Simd>(&mut self, _: S, part: usize, x: S::f64s) {
+        S::as_mut_simd_f64s(&mut self.0).0[part] = x;
+    }
 }
 
 fn wrong(message: String) -> Diagnostics {
@@ -63,6 +84,7 @@ struct Block {
     /// Of the present mode: the part of level inputs, and the round-off of each row.
     base: Vec<Lanes>,
     least: Vec<Lanes>,
+    reach: Reach,
     /// Modes of the runs one after another.
     sign: Vec<i8>,
     side: Vec<Side>,
@@ -78,9 +100,10 @@ struct Block {
     ended: u8,
 }
 
-/// Room for inputs that are not level, and for the ends of a step.
+/// Room for inputs that are not level, for speeds with them, and for the ends of a step.
 #[derive(Default)]
 struct Room {
+    x: Vec<Lanes>,
     entering: Vec<Lanes>,
     ends: Vec<Lanes>,
 }
@@ -125,8 +148,8 @@ pub struct Batch {
     arch: Arch,
     /// Inputs that are not level, step by step, where all runs have the same.
     common: Vec<Option<f64>>,
-    /// Steps of modes as blocks take them, in the order of the modes met; empty until one does.
-    packed: Vec<Vec<f64>>,
+    /// Steps of modes as blocks take them, in the order of the modes met, once one does.
+    packed: Vec<Option<Packed>>,
     room: Room,
     impacts: u64,
 }
@@ -140,13 +163,14 @@ impl Batch {
         let mut one = FixedStep::new(train, scenario, h)?;
         one.without_angles();
         let spread = |x: &[f64]| x.iter().map(|x| Lanes::of(*x)).collect::<Vec<Lanes>>();
-        let block = || Block {
+        let block = |lanes: usize| Block {
             v: spread(&one.v),
             rest: spread(&one.rest),
             inputs: spread(&one.inputs),
             factors: vec![Lanes::of(1.0); one.inputs.len()],
             base: vec![],
             least: vec![],
+            reach: Reach::new(lanes),
             sign: one.sign.repeat(LANES),
             side: one.side.repeat(LANES),
             touch: one.shafts.iter().map(|shaft| shaft.touch).collect::<Vec<_>>().repeat(LANES),
@@ -158,7 +182,7 @@ impl Batch {
             ended: 0,
         };
         Ok(Self {
-            blocks: (0..runs.div_ceil(LANES)).map(|_| block()).collect(),
+            blocks: (0..runs.div_ceil(LANES)).map(|b| block((runs - b * LANES).min(LANES))).collect(),
             len: runs,
             arch: Arch::new(),
             common: vec![],
@@ -282,9 +306,9 @@ impl Batch {
             one.refresh(middle);
             one.count_jumps(ended, middle);
             self.impacts += std::mem::take(&mut one.impacts) * self.len as u64;
-            self.packed.iter_mut().for_each(Vec::clear);
+            self.packed.clear();
             for block in blocks.iter_mut() {
-                block.present = [None; LANES];
+                (0..LANES).for_each(|lane| block.forget(lane));
                 block.uniform = true;
             }
         }
@@ -318,6 +342,7 @@ impl Block {
     fn forget(&mut self, lane: usize) {
         self.present[lane] = None;
         self.uniform = false;
+        self.reach.forget(lane);
     }
 
     /// Runs in a mode, as bits.
@@ -325,55 +350,21 @@ impl Block {
         self.present.iter().enumerate().map(|(lane, p)| u8::from(*p == mode) << lane).sum()
     }
 
-    /// The speed or slip that an input may follow, in each run.
-    #[inline(always)]
-    fn followed<S: pulp::Simd>(&self, simd: S, row: &[f64]) -> Lanes {
-        // In the order of `dot`.
-        let (fours, rest) = row.as_chunks::<4>();
-        let (v, v_rest) = self.v.split_at(4 * fours.len());
-        let mut all = Lanes::of(0.0);
-        for (part, all) in S::as_mut_simd_f64s(&mut all.0).0.iter_mut().enumerate() {
-            let add = |sum, w: f64, v: &Lanes| {
-                simd.add_f64s(sum, simd.mul_f64s(simd.splat_f64s(w), S::as_simd_f64s(&v.0).0[part]))
-            };
-            let zero = simd.splat_f64s(0.0);
-            let last = rest.iter().zip(v_rest).fold(zero, |sum, (w, v)| add(sum, *w, v));
-            let mut sums = [zero; 4];
-            for (w, v) in fours.iter().zip(v.as_chunks::<4>().0) {
-                (0..4).for_each(|k| sums[k] = add(sums[k], w[k], &v[k]));
-            }
-            let [a, b, c, d] = sums;
-            *all = match fours {
-                [] => last,
-                _ => simd.add_f64s(simd.add_f64s(simd.add_f64s(a, c), simd.add_f64s(b, d)), last),
-            };
-        }
-        all
-    }
-
     /// An input that differs between runs, but for its factor.
     #[inline(always)]
-    fn inputs_at<S: pulp::Simd>(&self, simd: S, one: &mut FixedStep, k: usize, middle: f64) -> [f64; LANES] {
-        let w = self.followed(simd, one.row_of_input(k));
-        match one.engine.system.scenario.sources.get(k).map(|source| &source.kind) {
-            Some(SourceKind::Linear { torque, about, slope }) => w.map(|w| torque - slope * (w - about)),
-            Some(SourceKind::Quadratic { torque, about, factor, even: true }) => {
-                w.map(|w| torque - factor * ((w - about) * (w - about)))
-            }
-            Some(SourceKind::Quadratic { torque, about, factor, even: false }) => {
-                w.map(|w| torque - factor * ((w - about) * (w - about).abs()))
-            }
-            _ => {
-                let integral = one.integral_of(k).map(|i| *self.rest[i]).unwrap_or_default();
-                let needs_all = one.needs_all_speeds(k);
-                std::array::from_fn(|lane| {
-                    if needs_all {
-                        copy_lane(&self.v, lane, &mut one.v);
-                    }
-                    one.input_at(k, middle, w[lane], integral[lane])
-                })
-            }
+    fn inputs_at<S: pulp::Simd>(&self, simd: S, one: &mut FixedStep, k: usize, middle: f64) -> Lanes {
+        if let Some(law) = Law::of(one, k) {
+            return law.at(simd, &self.v);
         }
+        let w = followed(simd, one.row_of_input(k), &self.v);
+        let integral = one.integral_of(k).map(|i| *self.rest[i]).unwrap_or_default();
+        let needs_all = one.needs_all_speeds(k);
+        Lanes(std::array::from_fn(|lane| {
+            if needs_all {
+                copy_lane(&self.v, lane, &mut one.v);
+            }
+            one.input_at(k, middle, w[lane], integral[lane])
+        }))
     }
 
     /// Takes the step of the runs of a mask one after the other; impacts met.
@@ -413,7 +404,11 @@ impl Block {
             one.present = Some(k);
         }
         (one.bound, one.turns) = (self.bound[lane], self.turns[lane]);
+        let settled = one.settled;
         one.step();
+        if one.settled != settled {
+            self.reach.forget(lane);
+        }
         (self.bound[lane], self.turns[lane], self.verdict[lane]) = (one.bound, one.turns, one.verdict.take());
         self.ended |= u8::from(self.verdict[lane].is_some()) << lane;
         paste_lane(&one.v, lane, &mut self.v);
@@ -458,7 +453,7 @@ fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
 #[derive(Clone, Copy)]
 struct Shared<'a> {
     mode: usize,
-    packed: &'a [f64],
+    packed: &'a Packed,
     common: &'a [Option<f64>],
 }
 
@@ -470,7 +465,7 @@ struct Stretch<'a> {
     one: &'a mut FixedStep,
     steps: u64,
     common: &'a [Option<f64>],
-    packed: &'a mut Vec<Vec<f64>>,
+    packed: &'a mut Vec<Option<Packed>>,
     room: &'a mut Room,
     impacts: &'a mut u64,
 }
@@ -485,7 +480,12 @@ impl pulp::WithSimd for Stretch<'_> {
         // The torque of a shaft follows from its twist, which only a single run knows.
         let needs_itself = one.needs_itself();
         let varying = one.varying.len();
-        for step in 0..steps as usize {
+        let (mut step, steps) = (0, steps as usize);
+        while step < steps {
+            step += block.cruise(simd, one, common, step..steps, room);
+            if step == steps {
+                break;
+            }
             let common = &common[step * varying..(step + 1) * varying];
             // Those in the same mode go together; those that leave it, alone.
             let mut left = all & !block.ended;
@@ -496,11 +496,11 @@ impl pulp::WithSimd for Stretch<'_> {
                 alone |= match present {
                     Some(k) if !needs_itself => {
                         let at = k as usize;
-                        if packed.get(at).is_none_or(Vec::is_empty) {
-                            packed.resize(packed.len().max(at + 1), vec![]);
-                            one.fused[at].pack(one.v.len(), &one.varying, &mut packed[at]);
+                        if packed.len() <= at {
+                            packed.resize_with(at + 1, || None);
                         }
-                        block.glide(simd, one, Shared { mode: at, packed: &packed[at], common }, alike, room)
+                        let packed = packed[at].get_or_insert_with(|| Packed::of(one, at));
+                        block.glide(simd, one, Shared { mode: at, packed, common }, alike, room)
                     }
                     _ => alike,
                 };
@@ -510,6 +510,7 @@ impl pulp::WithSimd for Stretch<'_> {
                 *impacts += block.step_each(one, alone, lanes);
             }
             one.count += 1;
+            step += 1;
         }
     }
 }
@@ -530,7 +531,7 @@ impl Block {
         let s = &one.engine.system;
         let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
         let mut alone = 0;
-        let Room { entering, ends } = room;
+        let Room { entering, ends, .. } = room;
         entering.clear();
         for (at, common) in common.iter().enumerate() {
             let k = one.varying[at];
@@ -539,14 +540,12 @@ impl Block {
                 Some(value) => u.iter_mut().for_each(|u| *u *= value),
                 None => {
                     let own = self.inputs_at(simd, one, k, middle);
-                    u.iter_mut().zip(own).for_each(|(u, own)| *u *= own);
+                    u.iter_mut().zip(*own).for_each(|(u, own)| *u *= own);
                 }
             }
             // What opens, closes or locks is more than a change of torque.
             if k >= drivers && k < drivers + frictions {
-                let was = &self.inputs[k];
-                let turns = |lane: usize, at: f64| (u[lane] == at) != (was[lane] == at);
-                alone |= mask(|lane| turns(lane, 0.0) | turns(lane, UNBOUNDED));
+                alone |= turns(&u, &self.inputs[k]);
             }
             write(&mut self.inputs[k], &u, alike);
             entering.push(u);
@@ -555,7 +554,7 @@ impl Block {
         let (rows, free) = (fused.rows, fused.free);
         ends.resize(free.next_multiple_of(BLOCK), Lanes::of(0.0));
         let settled = [&self.base[..rows], &self.least[..rows]];
-        let margins = product(simd, packed, [&self.v, entering], settled, ends, free);
+        let margins = product(simd, &packed.weights, [&self.v, entering], settled, ends, free);
         // As a single run looks at its growth; what is no number counts as grown.
         let mut square = Lanes::of(0.0);
         let mut add = |of: &Lanes| {
@@ -573,6 +572,9 @@ impl Block {
             alone |= mask(|lane| (margins[lane] < 0.0) | (square[lane] > self.bound[lane]) | square[lane].is_nan());
         }
         alone &= alike;
+        if alone == 0 {
+            self.reach.open(packed, [&self.v, entering], settled, one.count, alike);
+        }
         let going = alike & !alone;
         self.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
         if s.prescribed > 0 {
@@ -586,7 +588,7 @@ impl Block {
             for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
                 if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
                     let set = setpoint.value(middle, middle, &|_| 0.0);
-                    let w = self.followed(simd, &s.speeds[driver.member.index()]);
+                    let w = followed(simd, &s.speeds[driver.member.index()], &self.v);
                     let mut sum = self.rest[s.all() + i];
                     sum.iter_mut().zip(*w).for_each(|(sum, w)| *sum += one.h * (set - w));
                     write(&mut self.rest[s.all() + i], &sum, going);
@@ -595,6 +597,13 @@ impl Block {
         }
         alone
     }
+}
+
+/// Runs in which what opens, closes or locks does so at these inputs, as bits.
+#[inline(always)]
+fn turns(now: &Lanes, was: &Lanes) -> u8 {
+    let turns = |lane: usize, at: f64| (now[lane] == at) != (was[lane] == at);
+    mask(|lane| turns(lane, 0.0) | turns(lane, UNBOUNDED))
 }
 
 /// Runs of which that is so, as bits.

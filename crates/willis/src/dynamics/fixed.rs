@@ -202,7 +202,7 @@ pub struct FixedStep {
     trail: Trail,
     room: [Vec<f64>; 2],
     /// Steps that did not go on in the mode of the one before.
-    settled: u64,
+    pub(super) settled: u64,
     /// Losses of the elements and torques behind prescribed speeds, when decided.
     losses: Vec<f64>,
     reactions: Vec<f64>,

@@ -22,7 +22,7 @@ pub(super) struct Fused {
     pub rows: usize,
     pub free: usize,
     /// The end of the margins.
-    checked: usize,
+    pub checked: usize,
     pub mode: Exactly,
     /// Speeds before the step, then inputs.
     width: usize,

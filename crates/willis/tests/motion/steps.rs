@@ -296,6 +296,43 @@ fn a_batch_takes_the_steps_of_the_automatic() {
     assert_equal("through the gears", "engine", &text, &FACTORS, 16_000);
 }
 
+/// While clutches fill, the inputs that are not level are frictions, which open and close.
+#[test]
+fn a_batch_takes_the_steps_of_an_automatic_whose_clutches_fill() {
+    let text = |factor: f64| {
+        trains::automatic_text()
+            .replace("torque = \"150 N m\"", &format!("torque = \"{} N m\"", 150.0 * factor))
+            .replace("duration = \"16 s\"", "duration = \"16 s\"\nshift_time = \"0.3 s\"")
+    };
+    assert_equal("through the gears", "engine", &text, &FACTORS, 6000);
+}
+
+/// What a block knew of its modes no longer holds where a torque is scaled on the way.
+#[test]
+fn a_batch_takes_the_steps_of_runs_whose_torque_changes_on_the_way() {
+    let train = trains::automatic();
+    let names = members(&train);
+    let factors = |part: usize, k: usize| [1.0, -0.5, 0.2, 1.5, 0.0][(part + k) % 5] + 0.01 * k as f64;
+    let mut all = Batch::new(&train, "through the gears", 1e-3, FACTORS.len()).unwrap();
+    let mut ones: Vec<FixedStep> =
+        FACTORS.iter().map(|_| FixedStep::new(&train, "through the gears", 1e-3).unwrap()).collect();
+    let engine = ones[0].input("engine").unwrap();
+    for part in 0..12 {
+        for (k, one) in ones.iter_mut().enumerate() {
+            all.scale(k, "engine", factors(part, k)).unwrap();
+            one.set(engine, 150.0 * factors(part, k)).unwrap();
+        }
+        all.run(433);
+        for (k, one) in ones.iter_mut().enumerate() {
+            one.run(433);
+            for name in &names {
+                let (ours, theirs) = (all.speed(k, name).unwrap(), one.speed(name).unwrap());
+                assert_eq!(ours.to_bits(), theirs.to_bits(), "part {part}, run {k}, {name}: {ours:?}, not {theirs:?}");
+            }
+        }
+    }
+}
+
 /// A motor drives a load through a shaft with backlash; the load is braked for a while.
 fn shaft(factor: f64) -> String {
     format!(

@@ -58,7 +58,7 @@ pub(super) struct Basis {
     /// The unknown at each position, and the position of each unknown.
     columns: Vec<usize>,
     positions: Vec<Option<usize>>,
-    /// By rows.
+    /// By columns: what is added to a component waits for nothing but its own last sum.
     inverse: Vec<f64>,
     /// The same modulo the prime, once it was asked for.
     residues: Vec<u64>,
@@ -66,6 +66,7 @@ pub(super) struct Basis {
     /// Whether there is an inverse.
     regular: bool,
     left: Vec<f64>,
+    change: Vec<f64>,
     bound: Vec<f64>,
     modular: Vec<u64>,
     right: Vec<f64>,
@@ -84,6 +85,7 @@ impl Basis {
             residues_known: false,
             regular: false,
             left: vec![0.0; n],
+            change: vec![0.0; n],
             bound: vec![0.0; n],
             modular: vec![0; n],
             right: vec![0.0; n],
@@ -132,6 +134,7 @@ impl Basis {
             }
         }
         let (b, inv) = (&mut self.wide, &mut self.inverse);
+        // By rows, until it is done.
         (0..n).for_each(|i| inv[i * n + i] = 1.0);
         let is_long = n > LONG;
         for c in 0..n {
@@ -157,27 +160,37 @@ impl Basis {
         for c in (0..n).rev().filter(|_| is_long) {
             (0..c).for_each(|r| take_from(r, c, b, inv, n));
         }
+        for i in 0..n {
+            (0..i).for_each(|k| inv.swap(i * n + k, k * n + i));
+        }
         true
     }
 
     /// What the basis makes of a right side, each entry of which is known but for its own rounding.
     pub fn solve(&mut self, equations: &Equations, right: &[f64], x: &mut Vector) {
-        let n = self.n;
-        let times =
-            |m: &[f64], v: &[f64], i: usize| -> f64 { m[i * n..(i + 1) * n].iter().zip(v).map(|(a, b)| a * b).sum() };
-        for i in 0..n {
-            x.value[i] = times(&self.inverse, right, i);
-        }
+        x.value.fill(0.0);
+        self.add_product(right, &mut x.value);
         for _ in 0..2 {
             self.remainder(equations, right, &x.value);
-            for i in 0..n {
-                x.value[i] += times(&self.inverse, &self.left, i);
-            }
+            let mut change = std::mem::take(&mut self.change);
+            change.fill(0.0);
+            self.add_product(&self.left, &mut change);
+            x.value.iter_mut().zip(&change).for_each(|(x, change)| *x += change);
+            self.change = change;
         }
         self.remainder(equations, right, &x.value);
-        for i in 0..n {
-            let row = &self.inverse[i * n..(i + 1) * n];
-            x.error[i] = 2.0 * row.iter().zip(&self.bound).map(|(a, b)| (a * b).abs()).sum::<f64>();
+        x.error.fill(0.0);
+        for (column, b) in self.inverse.chunks_exact(self.n.max(1)).zip(&self.bound) {
+            x.error.iter_mut().zip(column).for_each(|(sum, a)| *sum += (a * b).abs());
+        }
+        x.error.iter_mut().for_each(|error| *error *= 2.0);
+    }
+
+    /// Adds the product of the inverse with a vector.
+    fn add_product(&self, of: &[f64], to: &mut [f64]) {
+        let columns = self.inverse.chunks_exact(self.n.max(1)).zip(of);
+        for (column, factor) in columns.filter(|(_, factor)| **factor != 0.0) {
+            to.iter_mut().zip(column).for_each(|(sum, a)| *sum += a * factor);
         }
     }
 
@@ -284,12 +297,12 @@ impl Basis {
             }
         }
         let pivot = x.value[at];
-        self.inverse[at * n..(at + 1) * n].iter_mut().for_each(|y| *y /= pivot);
-        for i in (0..n).filter(|&i| i != at && x.value[i] != 0.0) {
-            let factor = x.value[i];
-            for k in 0..n {
-                self.inverse[i * n + k] -= factor * self.inverse[at * n + k];
+        for column in self.inverse.chunks_exact_mut(n) {
+            let top = column[at] / pivot;
+            if top != 0.0 {
+                column.iter_mut().zip(&x.value).for_each(|(y, x)| *y -= x * top);
             }
+            column[at] = top;
         }
         self.positions[self.columns[at]] = None;
         self.columns[at] = unknown;

@@ -1,0 +1,233 @@
+//! How far speeds and inputs may go while a mode certainly goes on.
+//!
+//! Margins are sums over speeds and inputs, so that they hold at all points of a box if the least that they can be in it does.
+//! Where a block stays in such a box its steps need not look at margins, which are most of the rows of a step.
+
+use crate::dynamics::fixed::FixedStep;
+use crate::dynamics::fused::BLOCK;
+use crate::dynamics::mode::dot;
+
+use super::{LANES, Lanes, write};
+
+/// The step of a mode as blocks take it.
+#[derive(Default)]
+pub(super) struct Packed {
+    /// By block of rows: the weights of speeds and of inputs that are not level, a column in one piece.
+    pub weights: Vec<f64>,
+    /// By margin: by how much each speed and input changes it where what is held has no slip.
+    spans: Vec<f64>,
+    /// Rows of the speeds, those with the margins, and all.
+    free: usize,
+    checked: usize,
+    rows: usize,
+}
+
+impl Packed {
+    pub fn of(one: &FixedStep, mode: usize) -> Self {
+        let fused = &one.fused[mode];
+        let speeds = one.v.len();
+        let terms = speeds + one.varying.len();
+        let mut weights = vec![];
+        fused.pack(speeds, &one.varying, &mut weights);
+        // Directions in which nothing moves while the mode goes on, at right angles and of length one. What holds would end a
+        // slip within the step, so that its force weighs them thousands of times as much as others.
+        let mut held: Vec<Vec<f64>> = vec![];
+        let groups = one.engine.system.groups.iter().enumerate();
+        for (_, group) in groups.filter(|(g, _)| fused.mode.held >> g & 1 == 1) {
+            let mut row = group.row.clone();
+            remove(&held, &mut row);
+            let size = dot(&row, &row).sqrt();
+            // A slip that follows from others has none of its own.
+            if size > 1e-9 * dot(&group.row, &group.row).sqrt() {
+                row.iter_mut().for_each(|x| *x /= size);
+                held.push(row);
+            }
+        }
+        let mut spans = vec![];
+        for row in fused.free..fused.checked {
+            let start = spans.len();
+            spans.extend(weights_of(&weights, row, terms));
+            remove(&held, &mut spans[start..start + speeds]);
+        }
+        Self { weights, spans, free: fused.free, checked: fused.checked, rows: fused.rows }
+    }
+}
+
+/// The weights of a row.
+fn weights_of(weights: &[f64], row: usize, terms: usize) -> impl Iterator<Item = &f64> {
+    weights[row / BLOCK * BLOCK * terms..].iter().skip(row % BLOCK).step_by(BLOCK).take(terms)
+}
+
+/// Takes away the parts along directions; twice, since the first time leaves round-off.
+fn remove(directions: &[Vec<f64>], x: &mut [f64]) {
+    for q in directions.iter().chain(directions) {
+        let along = dot(q, x);
+        x.iter_mut().zip(q).for_each(|(x, q)| *x -= along * q);
+    }
+}
+
+/// Where a step has at most so many rows beside those of the speeds, all are looked at and there is no box: it would cost as
+/// much.
+const FEW: usize = 2 * BLOCK;
+
+/// Boxes that lasted fewer steps were not worth their price; steps until there are new ones then.
+const LEAST_WORTH: u32 = 4;
+const WAIT: u32 = 8;
+
+/// Of the way to the nearest edge of a mode, the part that a box takes.
+const SAFE: f64 = 0.9;
+
+/// How far ahead of the run the middle of its box is, in halves of its length: runs seldom turn round.
+const AHEAD: f64 = 0.8;
+
+/// What a block needs to step its runs inside their modes: rows to look at, and a box for each run that is as long in each
+/// direction as the run has moved of late.
+///
+/// Each run brings the rows of its own mode, so that those of different modes go on side by side.
+pub(super) struct Reach {
+    /// Middle and half the length of the boxes in each direction: negative where a run has none, without end where it needs none.
+    pub centre: Vec<Lanes>,
+    pub half: Vec<Lanes>,
+    /// By row: its part of level inputs and its round-off; by block of rows and by column, its weights.
+    pub base: Vec<Lanes>,
+    pub least: Vec<Lanes>,
+    pub weights: Vec<Lanes>,
+    /// Where the runs were when boxes were laid.
+    from: Vec<Lanes>,
+    /// Steps since boxes were laid, and steps to wait before they are again.
+    since: u32,
+    waits: u32,
+    /// When it was last asked whether they are due, and the answer.
+    asked: (u64, bool),
+    /// What stands in places without a run: a box without an end. Elsewhere none.
+    none: Lanes,
+}
+
+impl Reach {
+    /// For so many runs.
+    pub fn new(lanes: usize) -> Self {
+        Self {
+            centre: vec![],
+            half: vec![],
+            base: vec![],
+            least: vec![],
+            weights: vec![],
+            from: vec![],
+            since: LEAST_WORTH,
+            waits: 0,
+            asked: (u64::MAX, false),
+            none: Lanes(std::array::from_fn(|lane| if lane < lanes { -1.0 } else { f64::INFINITY })),
+        }
+    }
+
+    /// Whether every run may step inside.
+    #[inline]
+    pub fn is_open(&self, terms: usize) -> bool {
+        let has_all = |half: &Lanes| half.iter().all(|half| *half >= 0.0);
+        self.waits == 0 && self.half.len() == terms && self.half.first().is_some_and(has_all)
+    }
+
+    /// A run no longer may.
+    pub fn forget(&mut self, lane: usize) {
+        let none = self.none[lane];
+        self.half.iter_mut().for_each(|half| half[lane] = none);
+    }
+
+    pub fn count(&mut self, steps: usize) {
+        self.since = self.since.saturating_add(steps as u32);
+    }
+
+    /// At a step that is not taken inside: whether new boxes are worth while.
+    fn is_due(&mut self, step: u64) -> bool {
+        if self.asked.0 != step {
+            if self.waits > 0 {
+                self.waits -= 1;
+            } else if self.since < LEAST_WORTH {
+                self.waits = WAIT;
+            }
+            let is_due = self.waits == 0;
+            self.since = if is_due { 0 } else { self.since + 1 };
+            self.asked = (step, is_due);
+        }
+        self.asked.1
+    }
+
+    /// Makes the runs of `alike` ready, all in the mode of `packed`, if that is worth while: at speeds and inputs at which every
+    /// margin holds. Given are the parts of level inputs and the round-off of all rows, too.
+    #[inline(always)]
+    pub fn open(
+        &mut self,
+        packed: &Packed,
+        [v, entering]: [&[Lanes]; 2],
+        [base, least]: [&[Lanes]; 2],
+        step: u64,
+        alike: u8,
+    ) {
+        let of_speeds = packed.free.next_multiple_of(BLOCK);
+        let is_small = packed.rows <= of_speeds + FEW;
+        let is_open = |lane: usize| alike >> lane & 1 == 0 || self.half.first().is_some_and(|half| half[lane] >= 0.0);
+        if if is_small { (0..LANES).all(is_open) } else { !self.is_due(step) } {
+            return;
+        }
+        let terms = v.len() + entering.len();
+        self.half.resize(terms, self.none);
+        for of_terms in [&mut self.centre, &mut self.from] {
+            of_terms.resize(terms, Lanes::of(0.0));
+        }
+        // Rows that only others have ask nothing.
+        let rows = if is_small { packed.rows } else { of_speeds };
+        let nothing = [Lanes::of(0.0), Lanes::of(f64::NEG_INFINITY)];
+        for ((own, all), nothing) in [&mut self.base, &mut self.least].into_iter().zip([base, least]).zip(nothing) {
+            own.resize(own.len().max(rows), nothing);
+            let all = all[..rows].iter().chain(std::iter::repeat(&nothing));
+            own.iter_mut().zip(all).for_each(|(own, all)| write(own, all, alike));
+        }
+        self.weights.resize(self.base.len() * terms, Lanes::of(0.0));
+        let weights = packed.weights[..rows * terms].iter().chain(std::iter::repeat(&0.0));
+        self.weights.iter_mut().zip(weights).for_each(|(own, weight)| write(own, &Lanes::of(*weight), alike));
+        if is_small {
+            self.half.iter_mut().for_each(|half| write(half, &Lanes::of(f64::INFINITY), alike));
+        } else {
+            self.lay(packed, [v, entering], base, alike);
+        }
+    }
+
+    /// Lays boxes in which every margin holds.
+    #[inline(always)]
+    fn lay(&mut self, packed: &Packed, [v, entering]: [&[Lanes]; 2], base: &[Lanes], alike: u8) {
+        let terms = v.len() + entering.len();
+        let x = || v.iter().chain(entering);
+        // What does not move does so by round-off.
+        let size = |moved: f64, x: f64| moved.abs() + 1e-9 * x.abs() + f64::MIN_POSITIVE;
+        let mut most = Lanes::of(1e9);
+        let margins = (packed.free..packed.checked).zip(packed.spans.chunks_exact(terms.max(1)));
+        for (row, spans) in margins {
+            let (mut margin, mut change) = (base[row], Lanes::of(0.0));
+            for (((w, span), x), from) in weights_of(&packed.weights, row, terms).zip(spans).zip(x()).zip(&self.from) {
+                for k in 0..LANES {
+                    let moved = x[k] - from[k];
+                    margin[k] += w * x[k];
+                    change[k] += span.abs() * size(moved, x[k]) - AHEAD * (span * moved);
+                }
+            }
+            for k in 0..LANES {
+                // A margin that nothing changes holds as it does.
+                if change[k] > 0.0 {
+                    most[k] = most[k].min(SAFE * margin[k] / change[k]);
+                }
+            }
+        }
+        let boxes = self.centre.iter_mut().zip(&mut self.half).zip(&mut self.from);
+        for (x, ((centre, half), from)) in x().zip(boxes) {
+            let (mut middle, mut long) = (*x, Lanes::of(0.0));
+            for k in 0..LANES {
+                let (moved, most) = (x[k] - from[k], most[k].max(0.0));
+                middle[k] += AHEAD * most * moved;
+                long[k] = most * size(moved, x[k]);
+            }
+            write(centre, &middle, alike);
+            write(half, &long, alike);
+            write(from, x, alike);
+        }
+    }
+}
