@@ -18,7 +18,7 @@ use super::fixed::groups::UNBOUNDED;
 use super::fused::BLOCK;
 use super::mode::{Side, dot};
 use super::report::Outcome;
-use cruise::{Law, followed};
+use cruise::{Law, followed, may_cruise};
 use reach::{Packed, Reach};
 
 /// Runs in a block.
@@ -455,6 +455,8 @@ struct Shared<'a> {
     mode: usize,
     packed: &'a Packed,
     common: &'a [Option<f64>],
+    /// Whether blocks may cruise at all.
+    cruises: bool,
 }
 
 /// Some steps of a block.
@@ -480,11 +482,14 @@ impl pulp::WithSimd for Stretch<'_> {
         // The torque of a shaft follows from its twist, which only a single run knows.
         let needs_itself = one.needs_itself();
         let varying = one.varying.len();
+        let cruises = !needs_itself && may_cruise(one, common);
         let (mut step, steps) = (0, steps as usize);
         while step < steps {
-            step += block.cruise(simd, one, common, step..steps, room);
-            if step == steps {
-                break;
+            if cruises && block.ended == 0 {
+                step += block.cruise(simd, one, common, step..steps, all, room);
+                if step == steps {
+                    break;
+                }
             }
             let common = &common[step * varying..(step + 1) * varying];
             // Those in the same mode go together; those that leave it, alone.
@@ -499,8 +504,8 @@ impl pulp::WithSimd for Stretch<'_> {
                         if packed.len() <= at {
                             packed.resize_with(at + 1, || None);
                         }
-                        let packed = packed[at].get_or_insert_with(|| Packed::of(one, at));
-                        block.glide(simd, one, Shared { mode: at, packed, common }, alike, room)
+                        let packed = packed[at].get_or_insert_with(|| Packed::of(one, at, cruises));
+                        block.glide(simd, one, Shared { mode: at, packed, common, cruises }, alike, room)
                     }
                     _ => alike,
                 };
@@ -526,7 +531,7 @@ impl Block {
         alike: u8,
         room: &mut Room,
     ) -> u8 {
-        let Shared { mode, packed, common } = shared;
+        let Shared { mode, packed, common, cruises } = shared;
         let middle = one.middle();
         let s = &one.engine.system;
         let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
@@ -543,11 +548,10 @@ impl Block {
                     u.iter_mut().zip(*own).for_each(|(u, own)| *u *= own);
                 }
             }
-            // What opens, closes or locks is more than a change of torque.
-            if k >= drivers && k < drivers + frictions {
-                alone |= turns(&u, &self.inputs[k]);
-            }
-            write(&mut self.inputs[k], &u, alike);
+            // What opens, closes or locks is more than a change of torque: such a run sees it by what it had before.
+            let turned = if k >= drivers && k < drivers + frictions { turns(&u, &self.inputs[k]) } else { 0 };
+            alone |= turned;
+            write(&mut self.inputs[k], &u, alike & !turned);
             entering.push(u);
         }
         let fused = &one.fused[mode];
@@ -572,7 +576,7 @@ impl Block {
             alone |= mask(|lane| (margins[lane] < 0.0) | (square[lane] > self.bound[lane]) | square[lane].is_nan());
         }
         alone &= alike;
-        if alone == 0 {
+        if cruises && alone == 0 && self.ended == 0 {
             self.reach.open(packed, [&self.v, entering], settled, one.count, alike);
         }
         let going = alike & !alone;

@@ -296,7 +296,7 @@ fn a_batch_takes_the_steps_of_the_automatic() {
     assert_equal("through the gears", "engine", &text, &FACTORS, 16_000);
 }
 
-/// While clutches fill, the inputs that are not level are frictions, which open and close.
+/// While clutches fill, the inputs that are not level are frictions.
 #[test]
 fn a_batch_takes_the_steps_of_an_automatic_whose_clutches_fill() {
     let text = |factor: f64| {
@@ -305,6 +305,30 @@ fn a_batch_takes_the_steps_of_an_automatic_whose_clutches_fill() {
             .replace("duration = \"16 s\"", "duration = \"16 s\"\nshift_time = \"0.3 s\"")
     };
     assert_equal("through the gears", "engine", &text, &FACTORS, 6000);
+}
+
+/// Rigid elements lock and open halfway while a gear changes.
+#[test]
+fn a_batch_takes_the_steps_of_an_automatic_whose_rigid_elements_lock_on_the_way() {
+    let text = |factor: f64| {
+        trains::automatic_text()
+            .replace("capacity = \"2000 N m\"", "")
+            .replace("torque = \"150 N m\"", &format!("torque = \"{} N m\"", 150.0 * factor))
+            .replace("duration = \"16 s\"", "duration = \"16 s\"\nshift_time = \"0.3 s\"")
+    };
+    assert_equal("through the gears", "engine", &text, &FACTORS, 6000);
+}
+
+/// A brake opens and closes while nothing else changes: where its engagement passes zero.
+#[test]
+fn a_batch_takes_the_steps_of_a_brake_that_opens_on_the_way() {
+    let text = |factor: f64| {
+        let number = |x: f64| format!("\"{} N m\"", x * factor);
+        let wave = "value = { type = \"sine\", offset = 0.3, amplitude = 0.8, frequency = \"0.7 Hz\" }";
+        let set = trains::SET.replace("\"60 N m\"", &number(60.0)).replace("\"200 N m\"", &number(200.0));
+        set.replace("value = 1\n", &format!("{wave}\n"))
+    };
+    assert_equal("pulses", "engine", &text, &FACTORS, 6000);
 }
 
 /// What a block knew of its modes no longer holds where a torque is scaled on the way.

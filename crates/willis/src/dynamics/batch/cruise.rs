@@ -102,9 +102,20 @@ fn followed_part<S: pulp::Simd>(simd: S, row: &[f64], v: &[Lanes], part: usize) 
     }
 }
 
+/// Whether steps of a block depend on no more than its speeds, and on inputs that are common or follow a law; `common` are those
+/// of a step, at least.
+pub(super) fn may_cruise(one: &FixedStep, common: &[Option<f64>]) -> bool {
+    let s = &one.engine.system;
+    let has_law = |(&k, common): (&usize, &Option<f64>)| common.is_some() || Law::of(one, k).is_some();
+    s.prescribed == 0
+        && s.integrals == 0
+        && one.varying.len() <= MOST_VARYING
+        && one.varying.iter().zip(common).all(has_law)
+}
+
 impl Block {
     /// Takes steps as long as all runs stay in their boxes and do not grow beyond their bounds; how many. `common` is that of
-    /// all steps.
+    /// all steps, `all` are the runs of the block.
     #[inline(always)]
     pub(super) fn cruise<S: pulp::Simd>(
         &mut self,
@@ -112,20 +123,19 @@ impl Block {
         one: &mut FixedStep,
         common: &[Option<f64>],
         steps: Range<usize>,
+        all: u8,
         room: &mut Room,
     ) -> usize {
         let s = &one.engine.system;
         let (free, varying) = (s.free, one.varying.len());
         let terms = free + varying;
-        let is_plain = s.prescribed == 0 && s.integrals == 0 && varying <= MOST_VARYING && self.ended == 0;
-        if !is_plain || !self.reach.is_open(terms) {
+        if !self.reach.is_open(terms) {
             return 0;
         }
         let mut laws = [Law::Common; MOST_VARYING];
         for ((law, &k), common) in laws.iter_mut().zip(&one.varying).zip(&common[steps.start * varying..]) {
             if common.is_none() {
-                let Some(own) = Law::of(one, k) else { return 0 };
-                *law = own;
+                *law = Law::of(one, k).expect("a law, or it may not cruise");
             }
         }
         let Room { x, ends, .. } = room;
@@ -185,7 +195,7 @@ impl Block {
                 break;
             }
             let entering = || one.varying.iter().zip(&x[free..]);
-            if rubs && entering().any(|(&k, u)| of_friction.contains(&k) && turns(u, &self.inputs[k]) != 0) {
+            if rubs && entering().any(|(&k, u)| of_friction.contains(&k) && turns(u, &self.inputs[k]) & all != 0) {
                 break;
             }
             entering().for_each(|(&k, u)| self.inputs[k] = *u);

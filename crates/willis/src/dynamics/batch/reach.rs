@@ -1,11 +1,13 @@
 //! How far speeds and inputs may go while a mode certainly goes on.
 //!
 //! Margins are sums over speeds and inputs, so that they hold at all points of a box if the least that they can be in it does.
-//! Where a block stays in such a box its steps need not look at margins, which are most of the rows of a step.
+//! Where a block stays in such boxes its steps need not look at margins, which are most of the rows of a step. What is held has no
+//! slip while a mode goes on, so that only such points of a box count.
 
 use crate::dynamics::fixed::FixedStep;
 use crate::dynamics::fused::BLOCK;
 use crate::dynamics::mode::dot;
+use crate::dynamics::rounding::NOISE;
 
 use super::{LANES, Lanes, write};
 
@@ -14,7 +16,7 @@ use super::{LANES, Lanes, write};
 pub(super) struct Packed {
     /// By block of rows: the weights of speeds and of inputs that are not level, a column in one piece.
     pub weights: Vec<f64>,
-    /// By margin: by how much each speed and input changes it where what is held has no slip.
+    /// By margin: by how much each speed and input changes it where what is held has no slip; empty where nobody asks.
     spans: Vec<f64>,
     /// Rows of the speeds, those with the margins, and all.
     free: usize,
@@ -23,12 +25,17 @@ pub(super) struct Packed {
 }
 
 impl Packed {
-    pub fn of(one: &FixedStep, mode: usize) -> Self {
+    /// Of a mode; `cruises` tells whether blocks may.
+    pub fn of(one: &FixedStep, mode: usize, cruises: bool) -> Self {
         let fused = &one.fused[mode];
         let speeds = one.v.len();
         let terms = speeds + one.varying.len();
         let mut weights = vec![];
         fused.pack(speeds, &one.varying, &mut weights);
+        let mut packed = Self { weights, spans: vec![], free: fused.free, checked: fused.checked, rows: fused.rows };
+        if !cruises || packed.is_small() {
+            return packed;
+        }
         // Directions in which nothing moves while the mode goes on, at right angles and of length one. What holds would end a
         // slip within the step, so that its force weighs them thousands of times as much as others.
         let mut held: Vec<Vec<f64>> = vec![];
@@ -43,13 +50,22 @@ impl Packed {
                 held.push(row);
             }
         }
-        let mut spans = vec![];
-        for row in fused.free..fused.checked {
-            let start = spans.len();
-            spans.extend(weights_of(&weights, row, terms));
-            remove(&held, &mut spans[start..start + speeds]);
+        for row in packed.of_speeds()..fused.checked {
+            let start = packed.spans.len();
+            packed.spans.extend(weights_of(&packed.weights, row, terms));
+            remove(&held, &mut packed.spans[start..start + speeds]);
         }
-        Self { weights, spans, free: fused.free, checked: fused.checked, rows: fused.rows }
+        packed
+    }
+
+    /// The end of the blocks of rows that hold speeds: what follows are margins.
+    fn of_speeds(&self) -> usize {
+        self.free.next_multiple_of(BLOCK)
+    }
+
+    /// Whether all rows are looked at.
+    fn is_small(&self) -> bool {
+        self.rows <= self.of_speeds() + FEW
     }
 }
 
@@ -124,7 +140,7 @@ impl Reach {
     #[inline]
     pub fn is_open(&self, terms: usize) -> bool {
         let has_all = |half: &Lanes| half.iter().all(|half| *half >= 0.0);
-        self.waits == 0 && self.half.len() == terms && self.half.first().is_some_and(has_all)
+        self.half.len() == terms && self.half.first().is_some_and(has_all)
     }
 
     /// A run no longer may.
@@ -163,11 +179,14 @@ impl Reach {
         step: u64,
         alike: u8,
     ) {
-        let of_speeds = packed.free.next_multiple_of(BLOCK);
-        let is_small = packed.rows <= of_speeds + FEW;
-        let is_open = |lane: usize| alike >> lane & 1 == 0 || self.half.first().is_some_and(|half| half[lane] >= 0.0);
-        if if is_small { (0..LANES).all(is_open) } else { !self.is_due(step) } {
-            return;
+        let is_small = packed.is_small();
+        let alike_lanes = (0..LANES).filter(|lane| alike >> lane & 1 == 1);
+        if is_small {
+            if alike_lanes.clone().all(|lane| self.half.first().is_some_and(|half| half[lane] >= 0.0)) {
+                return;
+            }
+        } else if !self.is_due(step) {
+            return alike_lanes.for_each(|lane| self.forget(lane));
         }
         let terms = v.len() + entering.len();
         self.half.resize(terms, self.none);
@@ -175,7 +194,7 @@ impl Reach {
             of_terms.resize(terms, Lanes::of(0.0));
         }
         // Rows that only others have ask nothing.
-        let rows = if is_small { packed.rows } else { of_speeds };
+        let rows = if is_small { packed.rows } else { packed.of_speeds() };
         let nothing = [Lanes::of(0.0), Lanes::of(f64::NEG_INFINITY)];
         for ((own, all), nothing) in [&mut self.base, &mut self.least].into_iter().zip([base, least]).zip(nothing) {
             own.resize(own.len().max(rows), nothing);
@@ -200,20 +219,21 @@ impl Reach {
         // What does not move does so by round-off.
         let size = |moved: f64, x: f64| moved.abs() + 1e-9 * x.abs() + f64::MIN_POSITIVE;
         let mut most = Lanes::of(1e9);
-        let margins = (packed.free..packed.checked).zip(packed.spans.chunks_exact(terms.max(1)));
+        let margins = (packed.of_speeds()..packed.checked).zip(packed.spans.chunks_exact(terms.max(1)));
         for (row, spans) in margins {
-            let (mut margin, mut change) = (base[row], Lanes::of(0.0));
+            let (mut margin, mut change, mut noise) = (base[row], Lanes::of(0.0), Lanes::of(0.0));
             for (((w, span), x), from) in weights_of(&packed.weights, row, terms).zip(spans).zip(x()).zip(&self.from) {
                 for k in 0..LANES {
                     let moved = x[k] - from[k];
                     margin[k] += w * x[k];
+                    noise[k] += w.abs() * x[k].abs();
                     change[k] += span.abs() * size(moved, x[k]) - AHEAD * (span * moved);
                 }
             }
             for k in 0..LANES {
-                // A margin that nothing changes holds as it does.
+                // A margin that nothing changes holds as it does. Of one that is no more than round-off nobody knows.
                 if change[k] > 0.0 {
-                    most[k] = most[k].min(SAFE * margin[k] / change[k]);
+                    most[k] = most[k].min(SAFE * (margin[k] - NOISE * noise[k]) / change[k]);
                 }
             }
         }
