@@ -324,7 +324,7 @@ fn a_batch_takes_the_steps_of_an_automatic_whose_rigid_elements_lock_on_the_way(
 fn a_batch_takes_the_steps_of_a_brake_that_opens_on_the_way() {
     let text = |factor: f64| {
         let number = |x: f64| format!("\"{} N m\"", x * factor);
-        let wave = "value = { type = \"sine\", offset = 0.3, amplitude = 0.8, frequency = \"0.7 Hz\" }";
+        let wave = "value = { type = \"sine\", offset = 0.3, amplitude = 0.7, frequency = \"0.7 Hz\" }";
         let set = trains::SET.replace("\"60 N m\"", &number(60.0)).replace("\"200 N m\"", &number(200.0));
         set.replace("value = 1\n", &format!("{wave}\n"))
     };
