@@ -3,109 +3,30 @@
 //! Runs that are in the same mode share the affine map of its step ([`super::fused`]), so that a block of them is stepped by
 //! vector instructions. A run that leaves its mode takes that one step alone.
 
+mod block;
 mod cruise;
+mod lanes;
+mod law;
 mod reach;
-
-use std::ops::{Deref, DerefMut};
 
 use crate::arch::Arch;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{SourceKind, Train};
 
-use super::engine::Touch;
 use super::fixed::FixedStep;
-use super::fixed::groups::UNBOUNDED;
 use super::fused::BLOCK;
-use super::mode::{Side, dot};
+use super::mode::dot;
 use super::report::Outcome;
-use cruise::{Law, followed, may_cruise};
+use block::{Block, Room};
+use lanes::{LANES, Lanes, breaks, mask, turns, write};
+use law::{Law, followed, may_cruise};
 use reach::{Packed, Reach};
-
-/// Runs in a block.
-const LANES: usize = 8;
 
 /// Steps that a block takes before the next block takes as many: what it works on stays near.
 const STRETCH: u64 = 64;
 
-/// A number of each run of a block. A vector that begins anywhere lies in two lines of the cache, mostly.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Lanes([f64; LANES]);
-
-impl Deref for Lanes {
-    type Target = [f64; LANES];
-    #[inline(always)]
-    fn deref(&self) -> &[f64; LANES] {
-        &self.0
-    }
-}
-
-impl DerefMut for Lanes {
-    #[inline(always)]
-    fn deref_mut(&mut self) -> &mut [f64; LANES] {
-        &mut self.0
-    }
-}
-
-impl Lanes {
-    fn of(x: f64) -> Self {
-        Self([x; LANES])
-    }
-
-    /// How many vectors it fills, and one of them.
-    #[inline(always)]
-    fn parts<S: pulp::Simd>(&self, _: S) -> usize {
-        S::as_simd_f64s(&self.0).0.len()
-    }
-
-    #[inline(always)]
-    fn part<S: pulp::Simd>(&self, _: S, part: usize) -> S::f64s {
-        S::as_simd_f64s(&self.0).0[part]
-    }
-
-    #[inline(always)]
-    fn set_part<S: pulp::Simd>(&mut self, _: S, part: usize, x: S::f64s) {
-        S::as_mut_simd_f64s(&mut self.0).0[part] = x;
-    }
-}
-
 fn wrong(message: String) -> Diagnostics {
     Diagnostic::new(Code::UnknownName, "", message).into()
-}
-
-/// Runs that are stepped together.
-struct Block {
-    /// Speeds of the coordinates, and angles with integrals.
-    v: Vec<Lanes>,
-    rest: Vec<Lanes>,
-    /// What enters a step, and by what that is multiplied.
-    inputs: Vec<Lanes>,
-    factors: Vec<Lanes>,
-    /// Of the present mode: the part of level inputs, and the round-off of each row.
-    base: Vec<Lanes>,
-    least: Vec<Lanes>,
-    reach: Reach,
-    /// Modes of the runs one after another.
-    sign: Vec<i8>,
-    side: Vec<Side>,
-    touch: Vec<Touch>,
-    present: [Option<u32>; LANES],
-    /// Whether that is the same in all of them.
-    uniform: bool,
-    /// What a step looks at growth by, in each run, and why some of them ended.
-    bound: Lanes,
-    turns: [u32; LANES],
-    verdict: [Option<Outcome>; LANES],
-    /// Those, as bits.
-    ended: u8,
-}
-
-/// Room for inputs that are not level, for speeds with them, and for the ends of a step.
-#[derive(Default)]
-struct Room {
-    x: Vec<Lanes>,
-    entering: Vec<Lanes>,
-    ends: Vec<Lanes>,
 }
 
 /// Several runs of a scenario in steps of fixed length, which differ in initial speeds and in the size of torques.
@@ -439,16 +360,6 @@ fn paste_lane(from: &[f64], lane: usize, to: &mut [Lanes]) {
     to.iter_mut().zip(from).for_each(|(to, from)| to[lane] = *from);
 }
 
-/// Writes the runs of a mask.
-#[inline(always)]
-fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
-    if mask == u8::MAX {
-        *to = *from;
-    } else {
-        (0..LANES).filter(|lane| mask >> lane & 1 == 1).for_each(|lane| to[lane] = from[lane]);
-    }
-}
-
 /// What runs in one mode share in a step.
 #[derive(Clone, Copy)]
 struct Shared<'a> {
@@ -601,35 +512,6 @@ impl Block {
         }
         alone
     }
-}
-
-/// Runs in which what opens, closes or locks does so at these inputs, as bits.
-#[inline(always)]
-fn turns(now: &Lanes, was: &Lanes) -> u8 {
-    let turns = |lane: usize, at: f64| (now[lane] == at) != (was[lane] == at);
-    mask(|lane| turns(lane, 0.0) | turns(lane, UNBOUNDED))
-}
-
-/// Runs of which that is so, as bits.
-#[inline(always)]
-fn mask(is_so: impl Fn(usize) -> bool) -> u8 {
-    // Of none of them, nearly always.
-    if !(0..LANES).fold(false, |any, lane| any | is_so(lane)) {
-        return 0;
-    }
-    (0..LANES).map(|lane| u8::from(is_so(lane)) << lane).sum()
-}
-
-/// Whether a margin breaks, or a run has grown beyond its bound, in any run: nearly always in none.
-#[inline(always)]
-fn breaks<S: pulp::Simd>(simd: S, margins: &Lanes, square: &Lanes, bound: &Lanes) -> bool {
-    let [margins, square, bound] = [margins, square, bound].map(|x| S::as_simd_f64s(&x.0).0);
-    let (holds, breaks) = (simd.splat_f64s(1.0), simd.splat_f64s(-1.0));
-    let all = margins.iter().zip(square).zip(bound).fold(holds, |all, ((margin, square), bound)| {
-        let of_margin = simd.select_f64s(simd.less_than_f64s(*margin, simd.splat_f64s(0.0)), breaks, all);
-        simd.select_f64s(simd.less_than_or_equal_f64s(*square, *bound), of_margin, breaks)
-    });
-    simd.reduce_min_f64s(all) < 0.0
 }
 
 /// The product of a fused step with speeds and inputs of a block. Kept are the speeds it ends with, as many as are free; told

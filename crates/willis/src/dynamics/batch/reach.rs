@@ -9,7 +9,7 @@ use crate::dynamics::fused::BLOCK;
 use crate::dynamics::mode::dot;
 use crate::dynamics::rounding::NOISE;
 
-use super::{LANES, Lanes, write};
+use super::lanes::{LANES, Lanes, write};
 
 /// The step of a mode as blocks take it.
 #[derive(Default)]
