@@ -98,8 +98,8 @@ fn followed_part<S: pulp::Simd>(simd: S, row: &[f64], v: &[Lanes], part: usize) 
     }
 }
 
-/// Whether steps of a block depend on no more than its speeds, and on inputs that are common or follow a law; `common` are those
-/// of a step, at least.
+/// Whether steps of a block depend on no more than its speeds, and on inputs that are common or follow a law; `common` begins with those
+/// of a step.
 pub(super) fn may_cruise(one: &FixedStep, common: &[Option<f64>]) -> bool {
     let s = &one.engine.system;
     let has_law = |(&k, common): (&usize, &Option<f64>)| common.is_some() || Law::of(one, k).is_some();

@@ -12,7 +12,6 @@ use crate::dynamics::rounding::NOISE;
 use super::lanes::{LANES, Lanes, write};
 
 /// The step of a mode as blocks take it.
-#[derive(Default)]
 pub(super) struct Packed {
     /// By block of rows: the weights of speeds and of inputs that are not level, a column in one piece.
     pub weights: Vec<f64>,
@@ -71,7 +70,8 @@ impl Packed {
 
 /// The weights of a row.
 fn weights_of(weights: &[f64], row: usize, terms: usize) -> impl Iterator<Item = &f64> {
-    weights[row / BLOCK * BLOCK * terms..].iter().skip(row % BLOCK).step_by(BLOCK).take(terms)
+    let columns = &weights.as_chunks::<BLOCK>().0[row / BLOCK * terms..][..terms];
+    columns.iter().map(move |column| &column[row % BLOCK])
 }
 
 /// Takes away the parts along directions; twice, since the first time leaves round-off.
