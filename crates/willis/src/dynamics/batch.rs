@@ -18,7 +18,7 @@ use super::fused::BLOCK;
 use super::mode::dot;
 use super::report::Outcome;
 use block::{Block, Room};
-use lanes::{LANES, Lanes, breaks, mask, turns, write};
+use lanes::{LANES, Lanes, Mask, add_terms, breaks, mask, turns, write};
 use law::{Law, followed, may_cruise};
 use reach::{Packed, Reach};
 
@@ -229,8 +229,9 @@ impl Batch {
             self.impacts += std::mem::take(&mut one.impacts) * self.len as u64;
             self.packed.clear();
             for block in blocks.iter_mut() {
-                (0..LANES).for_each(|lane| block.forget(lane));
+                block.present = [None; LANES];
                 block.uniform = true;
+                block.reach.start_over();
             }
         }
         common.clear();
@@ -267,8 +268,8 @@ impl Block {
     }
 
     /// Runs in a mode, as bits.
-    fn alike(&self, mode: Option<u32>) -> u8 {
-        self.present.iter().enumerate().map(|(lane, p)| u8::from(*p == mode) << lane).sum()
+    fn alike(&self, mode: Option<u32>) -> Mask {
+        self.present.iter().enumerate().map(|(lane, p)| Mask::from(*p == mode) << lane).sum()
     }
 
     /// An input that differs between runs, but for its factor.
@@ -291,7 +292,7 @@ impl Block {
     /// Takes the step of the runs of a mask one after the other; impacts met.
     #[cold]
     #[inline(never)]
-    fn step_each(&mut self, one: &mut FixedStep, mask: u8, lanes: usize) -> u64 {
+    fn step_each(&mut self, one: &mut FixedStep, mask: Mask, lanes: usize) -> u64 {
         let (count, mut impacts) = (one.count, 0);
         for lane in (0..lanes).filter(|lane| mask >> lane & 1 == 1) {
             self.step_alone(one, lane);
@@ -331,7 +332,7 @@ impl Block {
             self.reach.forget(lane);
         }
         (self.bound[lane], self.turns[lane], self.verdict[lane]) = (one.bound, one.turns, one.verdict.take());
-        self.ended |= u8::from(self.verdict[lane].is_some()) << lane;
+        self.ended |= Mask::from(self.verdict[lane].is_some()) << lane;
         paste_lane(&one.v, lane, &mut self.v);
         paste_lane(&one.rest, lane, &mut self.rest);
         paste_lane(&one.inputs, lane, &mut self.inputs);
@@ -389,7 +390,7 @@ impl pulp::WithSimd for Stretch<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) {
         let Self { block, lanes, one, steps, common, packed, room, impacts } = self;
-        let all = ((1u32 << lanes) - 1) as u8;
+        let all = ((1u32 << lanes) - 1) as Mask;
         // The torque of a shaft follows from its twist, which only a single run knows.
         let needs_itself = one.needs_itself();
         let varying = one.varying.len();
@@ -439,9 +440,9 @@ impl Block {
         simd: S,
         one: &mut FixedStep,
         shared: Shared<'_>,
-        alike: u8,
+        alike: Mask,
         room: &mut Room,
-    ) -> u8 {
+    ) -> Mask {
         let Shared { mode, packed, common, cruises } = shared;
         let middle = one.middle();
         let s = &one.engine.system;
@@ -488,7 +489,7 @@ impl Block {
         }
         alone &= alike;
         if cruises && alone == 0 && self.ended == 0 {
-            self.reach.open(packed, [&self.v, entering], settled, one.count, alike);
+            self.reach.open(simd, (mode, packed), [&self.v, entering], settled, one.count, alike);
         }
         let going = alike & !alone;
         self.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
@@ -533,17 +534,10 @@ fn product<S: pulp::Simd>(
         let mut margin = *worst;
         let rows = base.as_chunks::<BLOCK>().0.iter().zip(least.as_chunks::<BLOCK>().0);
         for (at, ((base, least), weights)) in rows.zip(packed.chunks_exact(BLOCK * terms)).enumerate() {
-            // A row waits for each of its additions, so that several are under way at once.
             let mut sums = [0, 1, 2, 3].map(|k| of(&base[k]));
-            let mut add = |(w, x): (&[f64; BLOCK], &Lanes)| {
-                let x = of(x);
-                for k in 0..BLOCK {
-                    sums[k] = simd.add_f64s(sums[k], simd.mul_f64s(simd.splat_f64s(w[k]), x));
-                }
-            };
             let (of_speeds, of_inputs) = weights.as_chunks().0.split_at(v.len());
-            of_speeds.iter().zip(v).for_each(&mut add);
-            of_inputs.iter().zip(entering).for_each(&mut add);
+            add_terms(simd, &mut sums, of_speeds, v, part);
+            add_terms(simd, &mut sums, of_inputs, entering, part);
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| simd.sub_f64s(sums[k], of(&least[k])));
             margin = simd.min_f64s(margin, simd.min_f64s(simd.min_f64s(a, b), simd.min_f64s(c, d)));
             if at * BLOCK < free {

@@ -4,7 +4,7 @@ use crate::dynamics::engine::Touch;
 use crate::dynamics::mode::Side;
 use crate::dynamics::report::Outcome;
 
-use super::lanes::{LANES, Lanes};
+use super::lanes::{LANES, Lanes, Mask};
 use super::reach::Reach;
 
 /// Runs that are stepped together.
@@ -31,7 +31,7 @@ pub(super) struct Block {
     pub turns: [u32; LANES],
     pub verdict: [Option<Outcome>; LANES],
     /// Those, as bits.
-    pub ended: u8,
+    pub ended: Mask,
 }
 
 /// Room for inputs that are not level, for speeds with them, and for the ends of a step.

@@ -6,7 +6,7 @@ use crate::dynamics::fixed::FixedStep;
 use crate::dynamics::fused::BLOCK;
 
 use super::block::{Block, Room};
-use super::lanes::{Lanes, breaks, turns};
+use super::lanes::{Lanes, Mask, add_terms, breaks, turns};
 use super::law::{Law, MOST_VARYING};
 use super::reach::Reach;
 
@@ -20,7 +20,7 @@ impl Block {
         one: &mut FixedStep,
         common: &[Option<f64>],
         steps: Range<usize>,
-        all: u8,
+        all: Mask,
         room: &mut Room,
     ) -> usize {
         let s = &one.engine.system;
@@ -35,12 +35,14 @@ impl Block {
                 *law = Law::of(one, k).expect("a law, or it may not cruise");
             }
         }
+        // Speeds and inputs of a step, and room for those of the next.
         let Room { x, ends, .. } = room;
-        x.clear();
-        x.extend_from_slice(&self.v);
-        x.resize(terms, Lanes::of(0.0));
-        ends.resize(free.next_multiple_of(BLOCK), Lanes::of(0.0));
-        let (x, ends) = (&mut x[..terms], ends[..free.next_multiple_of(BLOCK)].as_chunks_mut::<BLOCK>().0);
+        let width = terms.max(free.next_multiple_of(BLOCK));
+        for of_step in [&mut *x, &mut *ends] {
+            of_step.resize(width.max(of_step.len()), Lanes::of(0.0));
+        }
+        let (mut x, mut next) = (&mut x[..width], &mut ends[..width]);
+        x[..free].copy_from_slice(&self.v);
         let Reach { centre, half, base, least, weights, .. } = &self.reach;
         let (centre, half) = (&centre[..terms], &half[..terms]);
         let (base, least) = (base.as_chunks::<BLOCK>().0, least.as_chunks::<BLOCK>().0);
@@ -48,37 +50,36 @@ impl Block {
         let (base, least) = (&base[..rows], &least[..rows]);
         let weights = &weights.as_chunks::<BLOCK>().0[..rows * terms];
         let of_friction = s.drivers.len()..s.drivers.len() + s.frictions.len();
+        // Where all rows are looked at there is no box.
+        let has_box = half.iter().any(|half| half.iter().any(|half| *half < f64::INFINITY));
         let rubs = one.varying.iter().any(|k| of_friction.contains(k));
         let mut taken = 0;
         for step in steps {
             let common = &common[step * varying..(step + 1) * varying];
             let mut inside = Lanes::of(f64::INFINITY);
             let mut square = Lanes::of(0.0);
-            for part in 0..inside.parts(simd) {
-                let (v, entering) = x.split_at_mut(free);
+            for part in 0..Lanes::parts(simd) {
+                let (v, entering) = x[..terms].split_at_mut(free);
                 for ((u, &k), (law, common)) in entering.iter_mut().zip(&one.varying).zip(laws.iter().zip(common)) {
                     let own = law.part(simd, v, *common, part);
                     u.set_part(simd, part, simd.mul_f64s(self.factors[k].part(simd, part), own));
                 }
                 let mut worst = simd.splat_f64s(f64::INFINITY);
-                for ((x, centre), half) in x.iter().zip(centre).zip(half) {
-                    let away = simd.abs_f64s(simd.sub_f64s(x.part(simd, part), centre.part(simd, part)));
-                    worst = simd.min_f64s(worst, simd.sub_f64s(half.part(simd, part), away));
+                if has_box {
+                    for ((x, centre), half) in x.iter().zip(centre).zip(half) {
+                        let away = simd.abs_f64s(simd.sub_f64s(x.part(simd, part), centre.part(simd, part)));
+                        worst = simd.min_f64s(worst, simd.sub_f64s(half.part(simd, part), away));
+                    }
                 }
                 let mut sum = simd.splat_f64s(0.0);
                 for (at, (base, least)) in base.iter().zip(least).enumerate() {
-                    // A row waits for each of its additions, so that several are under way at once.
                     let mut sums = [0, 1, 2, 3].map(|k| base[k].part(simd, part));
-                    for (w, x) in weights[at * terms..(at + 1) * terms].iter().zip(x.iter()) {
-                        let x = x.part(simd, part);
-                        for k in 0..BLOCK {
-                            sums[k] = simd.add_f64s(sums[k], simd.mul_f64s(w[k].part(simd, part), x));
-                        }
-                    }
+                    add_terms(simd, &mut sums, &weights[at * terms..(at + 1) * terms], &x[..terms], part);
                     for k in 0..BLOCK {
                         worst = simd.min_f64s(worst, simd.sub_f64s(sums[k], least[k].part(simd, part)));
                     }
-                    if let Some(ends) = ends.get_mut(at) {
+                    if at * BLOCK < free {
+                        let ends = &mut next[at * BLOCK..(at + 1) * BLOCK];
                         (0..BLOCK).for_each(|k| ends[k].set_part(simd, part, sums[k]));
                         for end in sums.iter().take(free - at * BLOCK) {
                             sum = simd.add_f64s(sum, simd.mul_f64s(*end, *end));
@@ -91,12 +92,12 @@ impl Block {
             if breaks(simd, &inside, &square, &self.bound) {
                 break;
             }
-            let entering = || one.varying.iter().zip(&x[free..]);
+            let entering = || one.varying.iter().zip(&x[free..terms]);
             if rubs && entering().any(|(&k, u)| of_friction.contains(&k) && turns(u, &self.inputs[k]) & all != 0) {
                 break;
             }
             entering().for_each(|(&k, u)| self.inputs[k] = *u);
-            x[..free].copy_from_slice(&ends.as_flattened()[..free]);
+            std::mem::swap(&mut x, &mut next);
             taken += 1;
         }
         self.v.copy_from_slice(&x[..free]);

@@ -3,9 +3,13 @@
 use std::ops::{Deref, DerefMut};
 
 use crate::dynamics::fixed::groups::UNBOUNDED;
+use crate::dynamics::fused::BLOCK;
 
-/// Runs in a block.
-pub(super) const LANES: usize = 8;
+/// Runs in a block: two of the widest vectors, since each step of a run waits for the one before.
+pub(super) const LANES: usize = 16;
+
+/// Runs of a block, as bits.
+pub(super) type Mask = u16;
 
 /// A number of each run of a block. A vector that begins anywhere lies in two lines of the cache, mostly.
 #[derive(Clone, Copy)]
@@ -32,11 +36,13 @@ impl Lanes {
         Self([x; LANES])
     }
 
-    /// How many vectors it fills, and one of them.
+    /// How many vectors it fills.
     #[inline(always)]
-    pub fn parts<S: pulp::Simd>(&self, _: S) -> usize {
-        S::as_simd_f64s(&self.0).0.len()
+    pub const fn parts<S: pulp::Simd>(_: S) -> usize {
+        LANES / S::F64_LANES
     }
+
+    /// One of them.
 
     #[inline(always)]
     pub fn part<S: pulp::Simd>(&self, _: S, part: usize) -> S::f64s {
@@ -51,8 +57,8 @@ impl Lanes {
 
 /// Writes the runs of a mask.
 #[inline(always)]
-pub(super) fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
-    if mask == u8::MAX {
+pub(super) fn write(to: &mut Lanes, from: &Lanes, mask: Mask) {
+    if mask == Mask::MAX {
         *to = *from;
     } else {
         (0..LANES).filter(|lane| mask >> lane & 1 == 1).for_each(|lane| to[lane] = from[lane]);
@@ -61,19 +67,56 @@ pub(super) fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
 
 /// Runs in which what opens, closes or locks does so at these inputs, as bits.
 #[inline(always)]
-pub(super) fn turns(now: &Lanes, was: &Lanes) -> u8 {
+pub(super) fn turns(now: &Lanes, was: &Lanes) -> Mask {
     let turns = |lane: usize, at: f64| (now[lane] == at) != (was[lane] == at);
     mask(|lane| turns(lane, 0.0) | turns(lane, UNBOUNDED))
 }
 
 /// Runs of which that is so, as bits.
 #[inline(always)]
-pub(super) fn mask(is_so: impl Fn(usize) -> bool) -> u8 {
+pub(super) fn mask(is_so: impl Fn(usize) -> bool) -> Mask {
     // Of none of them, nearly always.
     if !(0..LANES).fold(false, |any, lane| any | is_so(lane)) {
         return 0;
     }
-    (0..LANES).map(|lane| u8::from(is_so(lane)) << lane).sum()
+    (0..LANES).map(|lane| Mask::from(is_so(lane)) << lane).sum()
+}
+
+/// Adds the terms of a block of rows to their sums, one after the other. Weights are those of all runs, or of each.
+#[inline(always)]
+pub(super) fn add_terms<S: pulp::Simd, W: Weight>(
+    simd: S,
+    sums: &mut [S::f64s; BLOCK],
+    weights: &[[W; BLOCK]],
+    x: &[Lanes],
+    part: usize,
+) {
+    // A row waits for each of its additions, so that several are under way at once.
+    for (w, x) in weights.iter().zip(x) {
+        let x = x.part(simd, part);
+        for k in 0..BLOCK {
+            sums[k] = simd.add_f64s(sums[k], simd.mul_f64s(w[k].of_part(simd, part), x));
+        }
+    }
+}
+
+/// A weight of a row, in a part of the runs.
+pub(super) trait Weight {
+    fn of_part<S: pulp::Simd>(&self, simd: S, part: usize) -> S::f64s;
+}
+
+impl Weight for f64 {
+    #[inline(always)]
+    fn of_part<S: pulp::Simd>(&self, simd: S, _: usize) -> S::f64s {
+        simd.splat_f64s(*self)
+    }
+}
+
+impl Weight for Lanes {
+    #[inline(always)]
+    fn of_part<S: pulp::Simd>(&self, simd: S, part: usize) -> S::f64s {
+        self.part(simd, part)
+    }
 }
 
 /// Whether a margin breaks, or a run has grown beyond its bound, in any run: nearly always in none.

@@ -9,7 +9,7 @@ use crate::dynamics::fused::BLOCK;
 use crate::dynamics::mode::dot;
 use crate::dynamics::rounding::NOISE;
 
-use super::lanes::{LANES, Lanes, write};
+use super::lanes::{LANES, Lanes, Mask, write};
 
 /// The step of a mode as blocks take it.
 pub(super) struct Packed {
@@ -108,8 +108,13 @@ pub(super) struct Reach {
     pub base: Vec<Lanes>,
     pub least: Vec<Lanes>,
     pub weights: Vec<Lanes>,
+    /// The mode whose weights stand there, of each run.
+    modes: [Option<usize>; LANES],
     /// Where the runs were when boxes were laid.
     from: Vec<Lanes>,
+    /// By how much they moved since, and how much that is at least.
+    moved: Vec<Lanes>,
+    size: Vec<Lanes>,
     /// Steps since boxes were laid, and steps to wait before they are again.
     since: u32,
     waits: u32,
@@ -128,7 +133,10 @@ impl Reach {
             base: vec![],
             least: vec![],
             weights: vec![],
+            modes: [None; LANES],
             from: vec![],
+            moved: vec![],
+            size: vec![],
             since: LEAST_WORTH,
             waits: 0,
             asked: (u64::MAX, false),
@@ -141,6 +149,12 @@ impl Reach {
     pub fn is_open(&self, terms: usize) -> bool {
         let has_all = |half: &Lanes| half.iter().all(|half| *half >= 0.0);
         self.half.len() == terms && self.half.first().is_some_and(has_all)
+    }
+
+    /// Inputs are others now.
+    pub fn start_over(&mut self) {
+        self.half.fill(self.none);
+        self.modes = [None; LANES];
     }
 
     /// A run no longer may.
@@ -171,13 +185,14 @@ impl Reach {
     /// Makes the runs of `alike` ready, all in the mode of `packed`, if that is worth while: at speeds and inputs at which every
     /// margin holds. Given are the parts of level inputs and the round-off of all rows, too.
     #[inline(always)]
-    pub fn open(
+    pub fn open<S: pulp::Simd>(
         &mut self,
-        packed: &Packed,
+        simd: S,
+        (mode, packed): (usize, &Packed),
         [v, entering]: [&[Lanes]; 2],
         [base, least]: [&[Lanes]; 2],
         step: u64,
-        alike: u8,
+        alike: Mask,
     ) {
         let is_small = packed.is_small();
         let alike_lanes = (0..LANES).filter(|lane| alike >> lane & 1 == 1);
@@ -190,7 +205,7 @@ impl Reach {
         }
         let terms = v.len() + entering.len();
         self.half.resize(terms, self.none);
-        for of_terms in [&mut self.centre, &mut self.from] {
+        for of_terms in [&mut self.centre, &mut self.from, &mut self.moved, &mut self.size] {
             of_terms.resize(terms, Lanes::of(0.0));
         }
         // Rows that only others have ask nothing.
@@ -202,48 +217,70 @@ impl Reach {
             own.iter_mut().zip(all).for_each(|(own, all)| write(own, all, alike));
         }
         self.weights.resize(self.base.len() * terms, Lanes::of(0.0));
-        let weights = packed.weights[..rows * terms].iter().chain(std::iter::repeat(&0.0));
-        self.weights.iter_mut().zip(weights).for_each(|(own, weight)| write(own, &Lanes::of(*weight), alike));
+        let others = alike_lanes.filter(|&lane| self.modes[lane].replace(mode) != Some(mode));
+        let others = others.fold(0, |others, lane| others | 1 << lane);
+        if others != 0 {
+            let weights = packed.weights[..rows * terms].iter().chain(std::iter::repeat(&0.0));
+            self.weights.iter_mut().zip(weights).for_each(|(own, weight)| write(own, &Lanes::of(*weight), others));
+        }
         if is_small {
             self.half.iter_mut().for_each(|half| write(half, &Lanes::of(f64::INFINITY), alike));
         } else {
-            self.lay(packed, [v, entering], base, alike);
+            self.lay(simd, packed, [v, entering], base, alike);
         }
     }
 
     /// Lays boxes in which every margin holds.
     #[inline(always)]
-    fn lay(&mut self, packed: &Packed, [v, entering]: [&[Lanes]; 2], base: &[Lanes], alike: u8) {
+    fn lay<S: pulp::Simd>(
+        &mut self,
+        simd: S,
+        packed: &Packed,
+        [v, entering]: [&[Lanes]; 2],
+        base: &[Lanes],
+        alike: Mask,
+    ) {
         let terms = v.len() + entering.len();
         let x = || v.iter().chain(entering);
-        // What does not move does so by round-off.
-        let size = |moved: f64, x: f64| moved.abs() + 1e-9 * x.abs() + f64::MIN_POSITIVE;
-        let mut most = Lanes::of(1e9);
-        let margins = (packed.of_speeds()..packed.checked).zip(packed.spans.chunks_exact(terms.max(1)));
-        for (row, spans) in margins {
-            let (mut margin, mut change, mut noise) = (base[row], Lanes::of(0.0), Lanes::of(0.0));
-            for (((w, span), x), from) in weights_of(&packed.weights, row, terms).zip(spans).zip(x()).zip(&self.from) {
-                for k in 0..LANES {
-                    let moved = x[k] - from[k];
-                    margin[k] += w * x[k];
-                    noise[k] += w.abs() * x[k].abs();
-                    change[k] += span.abs() * size(moved, x[k]) - AHEAD * (span * moved);
-                }
-            }
+        for (((x, from), moved), size) in x().zip(&self.from).zip(&mut self.moved).zip(&mut self.size) {
             for k in 0..LANES {
-                // A margin that nothing changes holds as it does. Of one that is no more than round-off nobody knows.
-                if change[k] > 0.0 {
-                    most[k] = most[k].min(SAFE * (margin[k] - NOISE * noise[k]) / change[k]);
-                }
+                moved[k] = x[k] - from[k];
+                // What does not move does so by round-off.
+                size[k] = moved[k].abs() + 1e-9 * x[k].abs() + f64::MIN_POSITIVE;
             }
         }
+        let mut most = Lanes::of(1e9);
+        let all = |x: f64| simd.splat_f64s(x);
+        let add = |sum, w: f64, x| simd.add_f64s(sum, simd.mul_f64s(all(w), x));
+        for part in 0..Lanes::parts(simd) {
+            let mut least = most.part(simd, part);
+            let margins = (packed.of_speeds()..packed.checked).zip(packed.spans.chunks_exact(terms.max(1)));
+            for (row, spans) in margins {
+                let (mut margin, mut change, mut noise) = (base[row].part(simd, part), all(0.0), all(0.0));
+                let moves = self.moved.iter().zip(&self.size);
+                for (((w, span), x), (moved, size)) in
+                    weights_of(&packed.weights, row, terms).zip(spans).zip(x()).zip(moves)
+                {
+                    let x = x.part(simd, part);
+                    margin = add(margin, *w, x);
+                    noise = add(noise, w.abs(), simd.abs_f64s(x));
+                    change = add(change, span.abs(), size.part(simd, part));
+                    change = add(change, -AHEAD * span, moved.part(simd, part));
+                }
+                // A margin that nothing changes holds as it does. Of one that is no more than round-off nobody knows.
+                let sure = simd.mul_f64s(all(SAFE), add(margin, -NOISE, noise));
+                let nearer = simd.min_f64s(least, simd.div_f64s(sure, change));
+                least = simd.select_f64s(simd.greater_than_f64s(change, all(0.0)), nearer, least);
+            }
+            most.set_part(simd, part, simd.max_f64s(least, all(0.0)));
+        }
+        let moves = self.moved.iter().zip(&self.size);
         let boxes = self.centre.iter_mut().zip(&mut self.half).zip(&mut self.from);
-        for (x, ((centre, half), from)) in x().zip(boxes) {
+        for ((x, (moved, size)), ((centre, half), from)) in x().zip(moves).zip(boxes) {
             let (mut middle, mut long) = (*x, Lanes::of(0.0));
             for k in 0..LANES {
-                let (moved, most) = (x[k] - from[k], most[k].max(0.0));
-                middle[k] += AHEAD * most * moved;
-                long[k] = most * size(moved, x[k]);
+                middle[k] += AHEAD * most[k] * moved[k];
+                long[k] = most[k] * size[k];
             }
             write(centre, &middle, alike);
             write(half, &long, alike);

@@ -3,6 +3,8 @@
 //! The bound of each component is its own: |B⁻¹| times what the solution leaves over in the equations, which are kept
 //! as they were given. So neither the largest torque nor how the inverse came about is in it.
 
+use std::ops::Range;
+
 use crate::exact::Rational;
 use crate::exact::residue::{PRIME, power, times};
 
@@ -34,20 +36,26 @@ impl Vector {
 /// More rows are cleared first down, then up.
 const LONG: usize = 64;
 
-/// Takes row `c` from row `r` of a matrix and its inverse, as often as clears column `c`, where row `c` has a one.
-fn take_from(r: usize, c: usize, matrix: &mut [f64], inverse: &mut [f64], n: usize) {
-    let factor = matrix[r * n + c];
-    if factor == 0.0 {
-        return;
-    }
-    for m in [matrix, inverse] {
-        let (head, tail) = m.split_at_mut(r.max(c) * n);
-        let (row, top) = if r < c {
-            (&mut head[r * n..(r + 1) * n], &tail[..n])
-        } else {
-            (&mut tail[..n], &head[c * n..(c + 1) * n])
-        };
-        row.iter_mut().zip(top).for_each(|(x, y)| *x -= factor * y);
+/// From the first entry of a row that is not zero to the last.
+fn span(row: &[f64]) -> Range<usize> {
+    let is_met = |x: &f64| *x != 0.0;
+    let first = row.iter().position(is_met).unwrap_or(row.len());
+    first..row.iter().rposition(is_met).map_or(first, |last| last + 1)
+}
+
+/// Takes row `c` from the `rows` of a matrix and its inverse, as often as clears column `c`, where row `c` has a one.
+fn take_from(rows: Range<usize>, c: usize, matrix: &mut [f64], inverse: &mut [f64], n: usize) {
+    let spans = [&*matrix, &*inverse].map(|m| span(&m[c * n..(c + 1) * n]));
+    for r in rows.filter(|&r| r != c) {
+        let factor = matrix[r * n + c];
+        if factor == 0.0 {
+            continue;
+        }
+        for (m, span) in [&mut *matrix, &mut *inverse].into_iter().zip(&spans) {
+            let (head, tail) = m.split_at_mut(r.max(c) * n);
+            let (row, top) = if r < c { (&mut head[r * n..], &tail[..n]) } else { (&mut tail[..n], &head[c * n..]) };
+            row[span.clone()].iter_mut().zip(&top[span.clone()]).for_each(|(x, y)| *x -= factor * y);
+        }
     }
 }
 
@@ -152,13 +160,11 @@ impl Basis {
                 }
                 m[c * n..(c + 1) * n].iter_mut().for_each(|x| *x /= value);
             }
-            for r in (0..n).filter(|&r| r > c || r < c && !is_long) {
-                take_from(r, c, b, inv, n);
-            }
+            take_from(if is_long { c + 1 } else { 0 }..n, c, b, inv, n);
         }
         // From below up, a row is cleared with rows that are cleared: of a chain few have anything to clear.
         for c in (0..n).rev().filter(|_| is_long) {
-            (0..c).for_each(|r| take_from(r, c, b, inv, n));
+            take_from(0..c, c, b, inv, n);
         }
         for i in 0..n {
             (0..i).for_each(|k| inv.swap(i * n + k, k * n + i));

@@ -12,6 +12,7 @@
 //! its diagonal, under some scale of its columns, all of them are positive (an H-matrix with a positive diagonal is a
 //! P-matrix; Berman and Plemmons 1994, chapter 6): rolling contacts with small losses need no walk, however many they are.
 
+use std::collections::BTreeMap;
 use std::ops::Neg;
 
 use crate::exact::residue::{PRIME, power, times};
@@ -91,13 +92,44 @@ impl Neg for Tracked {
     }
 }
 
-/// A column of all rows that are left.
-type Column = Vec<Tracked>;
+/// The entries of a column that are not zero, by rows. Most columns of a train meet few rows.
+type Column = Vec<(usize, Tracked)>;
+
+/// The last of the largest entries whose sign is known, in these rows.
+fn pivot_of(column: &[(usize, Tracked)], is_open: impl Fn(usize) -> bool) -> Option<(usize, Tracked)> {
+    let known = column.iter().filter(|(row, x)| is_open(*row) && x.sign().is_some());
+    known.max_by(|(_, p), (_, q)| p.value.abs().total_cmp(&q.value.abs())).copied()
+}
+
+/// Takes `amount` of a column from another. `room` is for the result.
+fn subtract(from: &mut Column, amount: Tracked, column: &[(usize, Tracked)], room: &mut Column) {
+    room.clear();
+    let mut rest = from.iter().copied().peekable();
+    for &(row, factor) in column {
+        while let Some(entry) = rest.next_if(|(before, _)| *before < row) {
+            room.push(entry);
+        }
+        let x = rest.next_if(|(same, _)| *same == row).map_or_else(Tracked::default, |(_, x)| x);
+        let x = x.less(factor, amount);
+        if x.residue != 0 {
+            room.push((row, x));
+        }
+    }
+    room.extend(rest);
+    std::mem::swap(from, room);
+}
+
+/// Where a column has an entry in a row.
+fn find(column: &Column, row: usize) -> Option<usize> {
+    column.binary_search_by_key(&row, |(r, _)| *r).ok()
+}
 
 /// What is still to be chosen: for each place the alternatives, each of as many columns.
 #[derive(Clone)]
 struct Tree {
     places: Vec<Vec<Vec<Column>>>,
+    /// The rows without a pivot, in order.
+    rows: Vec<usize>,
     /// Sign of the pivots so far.
     sign: i8,
 }
@@ -111,13 +143,11 @@ const LEAST_DOMINATED: usize = 1 << 8;
 /// None if there are more choices to look at than these.
 pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
     let column = |j: usize| -> Column {
-        let mut column = vec![Tracked::default(); equations.rows];
-        for Entry { row, value, residue, .. } in &equations.columns[j] {
-            column[*row] = Tracked::new(*value, f64::EPSILON * value.abs(), *residue);
-        }
-        column
+        let entries = equations.columns[j].iter().filter(|e| e.residue != 0);
+        let tracked = |e: &Entry| (e.row, Tracked::new(e.value, f64::EPSILON * e.value.abs(), e.residue));
+        entries.map(tracked).collect()
     };
-    let minus = |j: usize| -> Column { column(j).into_iter().map(Neg::neg).collect() };
+    let minus = |j: usize| -> Column { column(j).into_iter().map(|(row, x)| (row, -x)).collect() };
     let mut places: Vec<Vec<Vec<Column>>> = equations.free().map(|j| vec![vec![column(j)]]).collect();
     let mut open: Vec<Vec<Vec<Column>>> = Vec::new();
     for mesh in &equations.meshes {
@@ -150,7 +180,7 @@ pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
     if choices > most && !two_ways {
         return None;
     }
-    let mut tree = Tree { places, sign: 1 };
+    let mut tree = Tree { places, rows: (0..equations.rows).collect(), sign: 1 };
     if tree.eliminate_shared().is_err() {
         return Some(false);
     }
@@ -204,25 +234,23 @@ impl Tree {
 
     /// Eliminates columns from those that are left. False if they depend on those before.
     fn eliminate(&mut self, columns: &mut Vec<Column>) -> Result<bool, Refused> {
+        let mut room = vec![];
         while !columns.is_empty() {
-            let column = columns.remove(0);
-            let known = |r: &usize| column[*r].sign().is_some_and(|s| s != 0);
-            let size = |r: usize| column[r].value.abs();
-            let Some(pivot) = (0..column.len()).filter(known).max_by(|&p, &q| size(p).total_cmp(&size(q))) else {
-                return if column.iter().all(|x| x.residue == 0) { Ok(false) } else { Err(Refused) };
+            let mut column = columns.remove(0);
+            let Some((row, pivot)) = pivot_of(&column, |_| true) else {
+                return if column.is_empty() { Ok(false) } else { Err(Refused) };
             };
-            let moved = if pivot % 2 == 0 { 1 } else { -1 };
-            self.sign *= moved * column[pivot].sign().expect("known");
-            let inverse = column[pivot].inverse();
-            let rest = self.places.iter_mut().flatten().flatten();
-            for other in rest.chain(columns.iter_mut()) {
-                let top = other.remove(pivot);
-                if top.residue == 0 {
-                    continue;
+            column.retain(|(r, _)| *r != row);
+            let place = self.rows.binary_search(&row).expect("entries are in rows that are left");
+            self.rows.remove(place);
+            let moved = if place % 2 == 0 { 1 } else { -1 };
+            self.sign *= moved * pivot.sign().expect("known");
+            let inverse = pivot.inverse();
+            for other in self.places.iter_mut().flatten().flatten().chain(columns.iter_mut()) {
+                if let Some(at) = find(other, row) {
+                    let (_, entry) = other.remove(at);
+                    subtract(other, entry.over(pivot, inverse), &column, &mut room);
                 }
-                let top = top.over(column[pivot], inverse);
-                let rows = column.iter().enumerate().filter(|(r, _)| *r != pivot).map(|(_, x)| x);
-                other.iter_mut().zip(rows).for_each(|(x, factor)| *x = x.less(*factor, top));
             }
         }
         Ok(true)
@@ -278,30 +306,40 @@ impl Exchanges {
             }
         }
         let n = basis.len();
-        if basis.iter().any(|column| column.len() != n) {
+        if tree.rows.len() != n {
             return None;
         }
-        // The exchanged columns over the basis, by elimination of its columns one by one.
-        let mut rows: Vec<Option<usize>> = vec![None; n];
+        // The exchanged columns over the basis: its columns are eliminated one by one below their pivots, then above them.
+        let mut positions: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut above: Vec<(usize, Column)> = vec![];
+        let mut room = vec![];
         for at in 0..n {
-            let column = basis[at].clone();
-            let open = |r: &usize| rows[*r].is_none() && column[*r].sign().is_some_and(|s| s != 0);
-            let size = |r: usize| column[r].value.abs();
-            let pivot = (0..n).filter(open).max_by(|&p, &q| size(p).total_cmp(&size(q)))?;
-            rows[pivot] = Some(at);
-            let inverse = column[pivot].inverse();
-            for other in basis[at + 1..].iter_mut().chain(&mut exchanged).filter(|c| c[pivot].residue != 0) {
-                let top = other[pivot].over(column[pivot], inverse);
-                for (r, (x, factor)) in other.iter_mut().zip(&column).enumerate() {
-                    *x = if r == pivot { top } else { x.less(*factor, top) };
+            let column = std::mem::take(&mut basis[at]);
+            let (row, pivot) = pivot_of(&column, |row| !positions.contains_key(&row))?;
+            let (done, below): (Column, Column) = column.into_iter().partition(|(r, _)| positions.contains_key(r));
+            let below: Column = below.into_iter().filter(|(r, _)| *r != row).collect();
+            positions.insert(row, at);
+            above.push((row, done));
+            let inverse = pivot.inverse();
+            for other in basis[at + 1..].iter_mut().chain(&mut exchanged) {
+                if let Some(at) = find(other, row) {
+                    let top = other[at].1.over(pivot, inverse);
+                    other[at].1 = top;
+                    subtract(other, top, &below, &mut room);
+                }
+            }
+        }
+        for (row, above) in above.iter().rev() {
+            for other in &mut exchanged {
+                if let Some(at) = find(other, *row) {
+                    subtract(other, other[at].1, above, &mut room);
                 }
             }
         }
         let mut matrix = vec![Tracked::default(); n * n];
-        for (r, at) in rows.into_iter().enumerate() {
-            let row = at.expect("as many as there are columns");
-            for (k, column) in exchanged.iter().enumerate() {
-                matrix[row * n + k] = column[r];
+        for (k, column) in exchanged.into_iter().enumerate() {
+            for (row, x) in column {
+                matrix[positions[&row] * n + k] = x;
             }
         }
         Some(Self { n, matrix, places })
