@@ -277,7 +277,9 @@ fn assert_equal(scenario: &str, source: &str, text: &dyn Fn(f64) -> String, fact
     }
 }
 
-const FACTORS: [f64; 11] = [1.0, 0.5, 2.0, 1.0025, 1.005, 0.9, 1.3, 0.5, 1.7, 1.0, 0.99];
+/// More than one block of runs has, and not as many as two.
+const FACTORS: [f64; 19] =
+    [1.0, 0.5, 2.0, 1.0025, 1.005, 0.9, 1.3, 0.5, 1.7, 1.0, 0.99, 0.985, 1.02, 1.4, 0.75, 0.6, 1.0, 0.97, 1.6];
 
 #[test]
 fn a_batch_takes_the_steps_of_the_set() {

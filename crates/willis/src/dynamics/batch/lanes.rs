@@ -43,7 +43,6 @@ impl Lanes {
     }
 
     /// One of them.
-
     #[inline(always)]
     pub fn part<S: pulp::Simd>(&self, _: S, part: usize) -> S::f64s {
         S::as_simd_f64s(&self.0).0[part]
