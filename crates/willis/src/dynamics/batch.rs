@@ -97,7 +97,8 @@ impl Batch {
             touch: one.shafts.iter().map(|shaft| shaft.touch).collect::<Vec<_>>().repeat(LANES),
             present: [None; LANES],
             uniform: true,
-            bound: Lanes::of(0.0),
+            // Places without a run have no bound to grow beyond.
+            bound: Lanes(std::array::from_fn(|lane| if lane < lanes { 0.0 } else { f64::INFINITY })),
             turns: [0; LANES],
             verdict: Default::default(),
             ended: 0,

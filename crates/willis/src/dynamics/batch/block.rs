@@ -34,7 +34,8 @@ pub(super) struct Block {
     pub ended: Mask,
 }
 
-/// Room for inputs that are not level, for speeds with them, and for the ends of a step.
+/// Room for speeds with inputs, for inputs that are not level, and for the ends of a step; where a block cruises, for speeds with
+/// inputs of the next step.
 #[derive(Default)]
 pub(super) struct Room {
     pub x: Vec<Lanes>,

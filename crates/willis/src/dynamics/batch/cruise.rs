@@ -53,12 +53,14 @@ impl Block {
         // Where all rows are looked at there is no box.
         let has_box = half.iter().any(|half| half.iter().any(|half| *half < f64::INFINITY));
         let rubs = one.varying.iter().any(|k| of_friction.contains(k));
+        // Of few runs, only the parts that have any.
+        let parts = ((Mask::BITS - all.leading_zeros()) as usize).div_ceil(S::F64_LANES);
         let mut taken = 0;
         for step in steps {
             let common = &common[step * varying..(step + 1) * varying];
             let mut inside = Lanes::of(f64::INFINITY);
             let mut square = Lanes::of(0.0);
-            for part in 0..Lanes::parts(simd) {
+            for part in 0..parts {
                 let (v, entering) = x[..terms].split_at_mut(free);
                 for ((u, &k), (law, common)) in entering.iter_mut().zip(&one.varying).zip(laws.iter().zip(common)) {
                     let own = law.part(simd, v, *common, part);

@@ -108,11 +108,11 @@ pub(super) struct Reach {
     pub base: Vec<Lanes>,
     pub least: Vec<Lanes>,
     pub weights: Vec<Lanes>,
-    /// The mode whose weights stand there, of each run.
+    /// The mode whose weights stand there, of each run: they are as good when the run comes back from elsewhere.
     modes: [Option<usize>; LANES],
     /// Where the runs were when boxes were laid.
     from: Vec<Lanes>,
-    /// By how much they moved since, and how much that is at least.
+    /// Room for how boxes are laid: by how much each run moved since, and how much that is at least.
     moved: Vec<Lanes>,
     size: Vec<Lanes>,
     /// Steps since boxes were laid, and steps to wait before they are again.
@@ -269,7 +269,8 @@ impl Reach {
                 }
                 // A margin that nothing changes holds as it does. Of one that is no more than round-off nobody knows.
                 let sure = simd.mul_f64s(all(SAFE), add(margin, -NOISE, noise));
-                let nearer = simd.min_f64s(least, simd.div_f64s(sure, change));
+                let ahead = simd.div_f64s(sure, change);
+                let nearer = simd.select_f64s(simd.less_than_f64s(ahead, least), ahead, least);
                 least = simd.select_f64s(simd.greater_than_f64s(change, all(0.0)), nearer, least);
             }
             most.set_part(simd, part, simd.max_f64s(least, all(0.0)));

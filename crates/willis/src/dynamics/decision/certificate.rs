@@ -92,7 +92,7 @@ impl Neg for Tracked {
     }
 }
 
-/// The entries of a column that are not zero, by rows. Most columns of a train meet few rows.
+/// The entries of a column that are not zero, in ascending order of rows. Most columns of a train meet few rows.
 type Column = Vec<(usize, Tracked)>;
 
 /// The last of the largest entries whose sign is known, in these rows.
@@ -310,15 +310,16 @@ impl Exchanges {
             return None;
         }
         // The exchanged columns over the basis: its columns are eliminated one by one below their pivots, then above them.
-        let mut positions: BTreeMap<usize, usize> = BTreeMap::new();
+        // By the row of a pivot, its column.
+        let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
         let mut above: Vec<(usize, Column)> = vec![];
         let mut room = vec![];
         for at in 0..n {
             let column = std::mem::take(&mut basis[at]);
-            let (row, pivot) = pivot_of(&column, |row| !positions.contains_key(&row))?;
-            let (done, below): (Column, Column) = column.into_iter().partition(|(r, _)| positions.contains_key(r));
+            let (row, pivot) = pivot_of(&column, |row| !pivots.contains_key(&row))?;
+            let (done, below): (Column, Column) = column.into_iter().partition(|(r, _)| pivots.contains_key(r));
             let below: Column = below.into_iter().filter(|(r, _)| *r != row).collect();
-            positions.insert(row, at);
+            pivots.insert(row, at);
             above.push((row, done));
             let inverse = pivot.inverse();
             for other in basis[at + 1..].iter_mut().chain(&mut exchanged) {
@@ -339,7 +340,7 @@ impl Exchanges {
         let mut matrix = vec![Tracked::default(); n * n];
         for (k, column) in exchanged.into_iter().enumerate() {
             for (row, x) in column {
-                matrix[positions[&row] * n + k] = x;
+                matrix[pivots[&row] * n + k] = x;
             }
         }
         Some(Self { n, matrix, places })

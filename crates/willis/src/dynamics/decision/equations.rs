@@ -47,7 +47,7 @@ pub(super) struct ElementPlaces {
 pub(super) struct Equations {
     pub rows: usize,
     members: usize,
-    /// The entries of each, by rows.
+    /// The entries of each, in ascending order of rows.
     pub columns: Vec<Vec<Entry>>,
     /// The other unknown of the pair of each; none for those free of sign, which are always basic.
     pub partner: Vec<Option<usize>>,
