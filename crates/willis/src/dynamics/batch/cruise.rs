@@ -54,7 +54,7 @@ impl Block {
         let has_box = half.iter().any(|half| half.iter().any(|half| *half < f64::INFINITY));
         let rubs = one.varying.iter().any(|k| of_friction.contains(k));
         // Of few runs, only the parts that have any.
-        let parts = ((Mask::BITS - all.leading_zeros()) as usize).div_ceil(S::F64_LANES);
+        let parts = Lanes::parts(simd, (Mask::BITS - all.leading_zeros()) as usize);
         let mut taken = 0;
         for step in steps {
             let common = &common[step * varying..(step + 1) * varying];

@@ -36,10 +36,10 @@ impl Lanes {
         Self([x; LANES])
     }
 
-    /// How many vectors it fills.
+    /// How many vectors so many runs fill.
     #[inline(always)]
-    pub const fn parts<S: pulp::Simd>(_: S) -> usize {
-        LANES / S::F64_LANES
+    pub const fn parts<S: pulp::Simd>(_: S, runs: usize) -> usize {
+        runs.div_ceil(S::F64_LANES)
     }
 
     /// One of them.

@@ -252,7 +252,7 @@ impl Reach {
         let mut most = Lanes::of(1e9);
         let all = |x: f64| simd.splat_f64s(x);
         let add = |sum, w: f64, x| simd.add_f64s(sum, simd.mul_f64s(all(w), x));
-        for part in 0..Lanes::parts(simd) {
+        for part in 0..Lanes::parts(simd, LANES) {
             let mut least = most.part(simd, part);
             let margins = (packed.of_speeds()..packed.checked).zip(packed.spans.chunks_exact(terms.max(1)));
             for (row, spans) in margins {

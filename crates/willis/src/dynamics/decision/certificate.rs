@@ -142,45 +142,13 @@ const LEAST_DOMINATED: usize = 1 << 8;
 
 /// None if there are more choices to look at than these.
 pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
-    let column = |j: usize| -> Column {
-        let entries = equations.columns[j].iter().filter(|e| e.residue != 0);
-        let tracked = |e: &Entry| (e.row, Tracked::new(e.value, f64::EPSILON * e.value.abs(), e.residue));
-        entries.map(tracked).collect()
-    };
-    let minus = |j: usize| -> Column { column(j).into_iter().map(|(row, x)| (row, -x)).collect() };
-    let mut places: Vec<Vec<Vec<Column>>> = equations.free().map(|j| vec![vec![column(j)]]).collect();
-    let mut open: Vec<Vec<Vec<Column>>> = Vec::new();
-    for mesh in &equations.meshes {
-        let Some([ahead, back]) = mesh.parts else { continue };
-        match mesh.rest {
-            None => open.push(vec![vec![column(ahead)], vec![minus(back)]]),
-            Some([[slip, _], [u, v]]) => {
-                places.push(vec![vec![column(v)]]);
-                open.push(vec![
-                    vec![column(ahead), column(slip)],
-                    vec![minus(back), column(slip)],
-                    vec![column(ahead), minus(u)],
-                ]);
-            }
-        }
-    }
-    for e in &equations.elements {
-        match e.yields {
-            [Some([slip, spare]), other] => {
-                places.extend(other.map(|[_, spare]| vec![vec![column(spare)]]));
-                open.push(vec![vec![column(slip)], vec![minus(spare)]]);
-            }
-            [None, Some([slip, spare])] => open.push(vec![vec![column(slip)], vec![minus(spare)]]),
-            [None, None] => {}
-        }
-    }
-    let choices = open.iter().fold(1usize, |n, place| n.saturating_mul(place.len()));
-    let two_ways = open.iter().all(|place| place.len() == 2);
-    places.extend(open);
+    let mut tree = Tree::of(equations);
+    let open = tree.places.iter().map(Vec::len).filter(|n| *n > 1);
+    let choices = open.clone().fold(1, usize::saturating_mul);
+    let two_ways = open.into_iter().all(|n| n == 2);
     if choices > most && !two_ways {
         return None;
     }
-    let mut tree = Tree { places, rows: (0..equations.rows).collect(), sign: 1 };
     if tree.eliminate_shared().is_err() {
         return Some(false);
     }
@@ -197,11 +165,54 @@ pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
     } else if choices > most {
         return None;
     }
-    let mut seen = None;
-    Some(tree.walk(&mut seen).is_ok() && seen.is_some())
+    Some(tree.agrees())
 }
 
 impl Tree {
+    /// All choices, what they share first.
+    fn of(equations: &Equations) -> Self {
+        let column = |j: usize| -> Column {
+            let entries = equations.columns[j].iter().filter(|e| e.residue != 0);
+            let tracked = |e: &Entry| (e.row, Tracked::new(e.value, f64::EPSILON * e.value.abs(), e.residue));
+            entries.map(tracked).collect()
+        };
+        let minus = |j: usize| -> Column { column(j).into_iter().map(|(row, x)| (row, -x)).collect() };
+        let mut places: Vec<Vec<Vec<Column>>> = equations.free().map(|j| vec![vec![column(j)]]).collect();
+        let mut open: Vec<Vec<Vec<Column>>> = Vec::new();
+        for mesh in &equations.meshes {
+            let Some([ahead, back]) = mesh.parts else { continue };
+            match mesh.rest {
+                None => open.push(vec![vec![column(ahead)], vec![minus(back)]]),
+                Some([[slip, _], [u, v]]) => {
+                    places.push(vec![vec![column(v)]]);
+                    open.push(vec![
+                        vec![column(ahead), column(slip)],
+                        vec![minus(back), column(slip)],
+                        vec![column(ahead), minus(u)],
+                    ]);
+                }
+            }
+        }
+        for e in &equations.elements {
+            match e.yields {
+                [Some([slip, spare]), other] => {
+                    places.extend(other.map(|[_, spare]| vec![vec![column(spare)]]));
+                    open.push(vec![vec![column(slip)], vec![minus(spare)]]);
+                }
+                [None, Some([slip, spare])] => open.push(vec![vec![column(slip)], vec![minus(spare)]]),
+                [None, None] => {}
+            }
+        }
+        places.extend(open);
+        Self { places, rows: (0..equations.rows).collect(), sign: 1 }
+    }
+
+    /// Whether no two determinants have opposite signs, none is left open, and one is not zero.
+    fn agrees(self) -> bool {
+        let mut seen = None;
+        self.walk(&mut seen).is_ok() && seen.is_some()
+    }
+
     /// Eliminates what all choices share. Refused where that leaves no determinant, or one that is open.
     fn eliminate_shared(&mut self) -> Result<(), Refused> {
         while self.places.first().is_some_and(|place| place.len() == 1) {
@@ -310,30 +321,30 @@ impl Exchanges {
             return None;
         }
         // The exchanged columns over the basis: its columns are eliminated one by one below their pivots, then above them.
-        // By the row of a pivot, its column.
+        // `pivots` leads from rows to columns.
         let mut pivots: BTreeMap<usize, usize> = BTreeMap::new();
         let mut above: Vec<(usize, Column)> = vec![];
         let mut room = vec![];
         for at in 0..n {
-            let column = std::mem::take(&mut basis[at]);
+            let mut column = std::mem::take(&mut basis[at]);
             let (row, pivot) = pivot_of(&column, |row| !pivots.contains_key(&row))?;
+            column.retain(|(r, _)| *r != row);
             let (done, below): (Column, Column) = column.into_iter().partition(|(r, _)| pivots.contains_key(r));
-            let below: Column = below.into_iter().filter(|(r, _)| *r != row).collect();
             pivots.insert(row, at);
             above.push((row, done));
             let inverse = pivot.inverse();
             for other in basis[at + 1..].iter_mut().chain(&mut exchanged) {
-                if let Some(at) = find(other, row) {
-                    let top = other[at].1.over(pivot, inverse);
-                    other[at].1 = top;
+                if let Some(place) = find(other, row) {
+                    let top = other[place].1.over(pivot, inverse);
+                    other[place].1 = top;
                     subtract(other, top, &below, &mut room);
                 }
             }
         }
         for (row, above) in above.iter().rev() {
             for other in &mut exchanged {
-                if let Some(at) = find(other, *row) {
-                    subtract(other, other[at].1, above, &mut room);
+                if let Some(place) = find(other, *row) {
+                    subtract(other, other[place].1, above, &mut room);
                 }
             }
         }
@@ -440,4 +451,16 @@ impl Minors {
         }
         self.are_positive(depth + 1, open, forced)
     }
+}
+
+/// Whether the minors say that there is one motion, whether the determinants one by one do, and whether the matrix is
+/// dominated by its diagonal; none where there is nothing to choose, or no minors decide.
+#[cfg(test)]
+pub(super) fn ways(equations: &Equations) -> Option<(bool, bool, bool)> {
+    let mut tree = Tree::of(equations);
+    tree.eliminate_shared().ok()?;
+    let matrix = Exchanges::of(&tree).filter(|matrix| matrix.n > 0)?;
+    let is_dominated = matrix.is_dominated();
+    let minors = Minors::of(matrix).and_then(Minors::all)?;
+    Some((minors, tree.agrees(), is_dominated))
 }

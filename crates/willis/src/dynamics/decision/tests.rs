@@ -4,6 +4,8 @@ use serde_json::Value;
 
 use crate::exact::Rational;
 
+use super::certificate::ways;
+use super::equations::Equations;
 use super::motion::Amount;
 use super::{Body, Decision, Element, Inertia, Load, Mesh, Motion, Problem, Verdict};
 
@@ -389,4 +391,25 @@ fn the_complete_search_finds_what_is_certain() {
         }
     }
     assert!(searched > 100, "{searched}");
+}
+
+/// The certificate looks at principal minors over a basis, or at the diagonal; here beside all determinants one by one.
+#[test]
+fn minors_say_what_determinants_say() {
+    let (mut yes, mut no, mut dominated) = (0, 0, 0);
+    for seed in 0..600 {
+        let dice = &mut Dice(seed);
+        let sets = 1 + dice.below(3);
+        let mut problem = random_problem(dice, sets);
+        // With large losses a train may lock.
+        for mesh in problem.meshes.iter_mut().filter(|_| seed % 2 == 1) {
+            mesh.efficiency = [0, 1].map(|_| Rational::new(300 + dice.below(600) as i64, 1000));
+        }
+        let Some((minors, determinants, is_dominated)) = ways(&Equations::new(&problem)) else { continue };
+        assert_eq!(minors, determinants, "{seed}");
+        assert!(minors || !is_dominated, "{seed}");
+        *if minors { &mut yes } else { &mut no } += 1;
+        dominated += u32::from(is_dominated);
+    }
+    assert!(yes > 500 && no > 20 && dominated > 50, "{yes} with one motion, {no} without, {dominated} dominated");
 }
